@@ -60,7 +60,7 @@ def test_a_flywheel_behind_a_shaft_changes_in_a_run_between_points(solver: str) 
     system = empty()
     mbs = system.mbs
     box = mbs.CreateMassPoint(referencePosition=[1.0, 0.0, 0.0], mass=1.0, gravity=[10.0, 0.0, 0.0])
-    shaft = {"series_stiffness": 1e3, "series_damping": 20.0}
+    shaft: dict[str, Any] = {"series_stiffness": 1e3, "series_damping": 20.0}
     made = CreateInerter(mbs, "d", [mbs.CreateGround(), box], inertance=4.0, **shaft)
     mbs.SetPreStepUserFunction(heavier(made, "set", 0.5))
     solve(mbs, settings(1.0, 5e-4), solver)
@@ -84,15 +84,15 @@ def test_a_change_of_a_kept_mass_is_refused() -> None:
     system = line([1.0], [0.0])
     made = CreateInerter(system.mbs, "d", [None, system.parts[0]], inertance=4.0, viscous=2.0)
 
-    def load(mbs: Any, t: float, value: float) -> float:
+    def pushed(mbs: Any, t: float, load: float) -> float:
         if t > 0.01:
             made.set(viscous=3.0)
             made.set(inertance=9.0)
-        return value
+        return load
 
     system.mbs.AddLoad(
         itemInterface.LoadCoordinate(
-            markerNumber=coordinate(system.mbs, system.parts[0]), load=1.0, loadUserFunction=load
+            markerNumber=coordinate(system.mbs, system.parts[0]), load=1.0, loadUserFunction=pushed
         )
     )
     with pytest.raises(Exception, match="reuseConstantMassMatrix = False before SolveDynamic"):
@@ -144,7 +144,7 @@ def test_elements_that_slip_do_not_shorten_implicit_steps(solver: str, symbolic:
     mbs.AddLoad(
         itemInterface.LoadCoordinate(
             markerNumber=coordinate(mbs, node), load=1.0,
-            loadUserFunction=lambda mbs, t, value: 60.0 * np.sin(7.0 * t),
+            loadUserFunction=lambda mbs, t, load: 60.0 * np.sin(7.0 * t),
         )
     )  # fmt: skip
     chosen = settings(1.0, 1e-3, newton=1e-10)
@@ -165,6 +165,8 @@ def test_several_threads_are_refused() -> None:
     chosen.parallel.numberOfThreads = 2
     with pytest.raises(ValueError, match="numberOfThreads is 2, and with several threads"):
         solve(system.mbs, chosen)
+    with pytest.raises(ValueError, match="numberOfThreads is 2, and with several threads"):
+        system.mbs.SolveStatic(chosen)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Whether a channel that clips may be one: it shows some of the force."""
+"""A force channel that clips: where records show it, and whether it may be one."""
 
 from __future__ import annotations
 
@@ -6,13 +6,40 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from inerter.catalogue.effects import EFFECTS
 from inerter.identify.channel import clips
 from inerter.identify.model import Model
 from inerter.identify.prediction import beyond_limits
 from inerter.identify.runs import BenchRun
+from inerter.records import Record
+from inerter.records.clipping import cut_levels
 
+SATURATION = EFFECTS["sensor_saturation"].name
+_LIMITS = {"upper": "force_maximum", "lower": "force_minimum"}
+# share of the range by which a limit begins within the level that records show
+_WITHIN = 0.005
 # share of the samples at its limits from which on such a channel is a constant force
 _MOST = 0.8
+
+
+def begun_clipped(records: Sequence[Record], model: Model) -> Model | None:
+    """A model with the limits at which records show again and again that the force is cut off.
+
+    What flat tops hide looks like a friction that falls with the speed, a spring, a curve; found
+    before the limits, they lead astray. None where no record shows any, or another one goes beyond.
+    """
+    high = max(float(record.force.max()) for record in records)
+    low = min(float(record.force.min()) for record in records)
+    found: dict[str, float] = {}
+    for record in records:
+        levels, _ = cut_levels(record.force, record.displacement)
+        for end, level in levels.items():
+            beyond = high - level if end == "upper" else level - low
+            if beyond <= _WITHIN * (high - low):
+                inwards = -1.0 if end == "upper" else 1.0
+                found[_LIMITS[end]] = level + inwards * _WITHIN * (high - low)
+    missing = {name: value for name, value in found.items() if name not in model.values}
+    return model.adding(None, **missing) if missing else None
 
 
 def hides_nearly_all(model: Model, runs: Sequence[BenchRun]) -> bool:

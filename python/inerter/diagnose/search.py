@@ -91,7 +91,8 @@ class Search:
     Effects `excluded`, for good `never`, are not added, those `kept` stay; one that is added takes
     at least the share `least` of the error away.
     A `witness` is asked whether a tone is of the motion, which may be known to be `one_tone`.
-    It `draws` curves along the stroke, or none. When its `time` is over nothing is added.
+    It `draws` curves along the stroke, or none; it may `begin` with more than the baseline. When
+    its `time` is over nothing is added.
     """
 
     runs: Sequence[BenchRun]
@@ -106,6 +107,7 @@ class Search:
     witness: Witness | None = None
     one_tone: bool = False
     draws: bool = True
+    begin: Model | None = None
     time: TimeLimit = field(default_factory=TimeLimit)
 
     def __post_init__(self) -> None:
@@ -153,11 +155,11 @@ class Search:
         until: str | None = None,
         most: int = CRITERIA.most_effects,
     ) -> Scored:
-        """Search from a model, by default the baseline; the extended one, fitted to all fit data.
+        """Search from a model, by default that to `begin` with; the best, fitted to all fit data.
 
         `most` effects are added at most; with the effect `until` it ends, and nothing is pruned.
         """
-        start = start or self.baseline
+        start = start or self.begin or self.baseline
         self._weigh_for(start)
         if any(is_local(effect) for effect, _ in effects_of(start, self.baseline)):
             self._folds = self._spread

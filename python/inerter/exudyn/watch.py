@@ -142,6 +142,9 @@ def _careful(original: Callable[..., Any]) -> Callable[..., Any]:
 def _still(original: Callable[..., Any]) -> Callable[..., Any]:
     @functools.wraps(original)
     def SolveStatic(mbs: Any, *args: Any, **kwargs: Any) -> Any:  # noqa: N802 - Exudyn's name
+        settings = kwargs.get("simulationSettings") or (args[0] if args else None)
+        if settings is not None and models_of(mbs):
+            _refuse_threads(settings, models_of(mbs))
         moving = {
             int(model.objectNumber): model.element for model in models_of(mbs) if _goes_on(model)
         }

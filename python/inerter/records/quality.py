@@ -7,15 +7,16 @@ Rules prefer silence to a false alarm. Nothing is repaired here.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, label, median_filter
+from scipy.ndimage import gaussian_filter1d, median_filter
 
 from inerter.motion_units import ROTATION, words
 
+from .clipping import find_clipping, stretches
 from .duplicates import find_duplicate_records
 from .even_clock import even_spacing
 from .jumps import find_displacement_jumps
@@ -124,17 +125,11 @@ def outlier_rows(values: Array) -> NDArray[np.intp]:
         limit = np.maximum(limit, factor * np.maximum(local, overall))
     rows = [
         np.arange(start, stop)
-        for start, stop in _stretches(away > limit)
+        for start, stop in stretches(away > limit)
         if stop - start <= 3 and _returns(values, start, stop)
     ]
     found = np.concatenate(rows) if rows else none
     return found if len(found) <= 0.01 * len(values) else none
-
-
-def _stretches(mask: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
-    """Start and end (exclusive) of each run of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(np.int8), [0]))))
-    return zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
 
 
 def _returns(values: Array, start: int, stop: int) -> bool:
@@ -177,74 +172,6 @@ def _slow(record: Record) -> NDArray[np.bool_]:
     x, time = record.displacement, record.time
     speed = np.abs((x[behind] - x[before]) / (time[behind] - time[before]))
     return speed < 0.05 * np.quantile(speed, 0.95)
-
-
-def find_clipping(record: T) -> T:
-    """`clipping`: a force or acceleration cut off at a level it reaches again and again.
-
-    The rule, at the highest and at the lowest value: stretches of three or more samples within
-    one quantisation step of it, on three peaks (both ends together), or two with five samples.
-    Only stretches that the channel climbs into count: from a stretch of n samples it falls, over
-    n more on either side, by 20 steps or more, and a single sample next to it makes less than 2/3
-    of the fall over max(2, n/4). This spares rounded tops and the plateaus of dry friction. A
-    force may rest while the displacement does. Displacement and velocity are not looked at:
-    strokes dwell at their ends.
-    """
-    for name, values in record.channels().items():
-        if not name.endswith(("force", "acceleration")):
-            continue
-        x = record.displacement if isinstance(record, Record) else None
-        ends = {"upper": _cut_peaks(values, x), "lower": _cut_peaks(-values, x)}
-        peaks = [length for lengths in ends.values() for length in lengths]
-        longest_pair = max(sorted(lengths)[-2] if len(lengths) > 1 else 0
-                           for lengths in ends.values())  # fmt: skip
-        if len(peaks) >= 3 or longest_pair >= 5:
-            level = {"upper": values.max(), "lower": values.min()}
-            where = " and ".join(f"{level[end]:.4g}" for end, lengths in ends.items() if lengths)
-            text = f"{name!r} is cut off at {where} on {len(peaks)} peaks: range of the sensor?"
-            record = record.warn("clipping", text)
-    return record
-
-
-def _cut_peaks(values: Array, x: Array | None) -> list[int]:
-    """Lengths of the flat stretches at the maximum, the longest of each peak."""
-    at_rest = 0.0 if x is None else 1e-4 * np.ptp(x)
-    change = np.abs(np.diff(values))
-    size = np.ptp(values)
-    change = change[change > 1e-9 * size]
-    if not len(change):
-        return []
-    # one step of the converter; of a channel that is not quantised it is tiny
-    step = float(np.min(change))
-    if step > 0.02 * size:
-        return []
-    flat = values >= values.max() - 1.01 * step
-    # chatter near the limit: one peak lasts until the channel is down by a tenth of its range
-    peak, _ = label(values >= values.max() - 0.1 * size)  # type: ignore[misc]
-    lengths: dict[int, int] = {}
-    for start, stop in _stretches(flat):
-        length = stop - start
-        # without the samples on either side of a rest, where the stretch is long enough
-        inner = slice(start + 1, stop - 1) if length >= 5 else slice(start, stop)
-        if x is not None and np.ptp(x[inner]) < at_rest:
-            continue
-        if length >= 3 and _climbs(values, start, stop, step):
-            lengths[int(peak[start])] = max(lengths.get(int(peak[start]), 0), length)
-    return list(lengths.values())
-
-
-def _climbs(values: Array, start: int, stop: int, step: float) -> bool:
-    """Whether the channel climbs into a flat stretch steadily, and not over a rounded top."""
-    length = stop - start
-    level = values[start]
-    sides = (values[:start][::-1], values[stop:])
-    fall = [level - side[min(length, len(side)) - 1] for side in sides if len(side)]
-    if not fall or min(fall) < 20.0 * step:
-        return False
-    lag = max(2, length // 4)
-    return any(
-        len(side) >= lag and level - side[lag - 1] > 1.5 * (level - side[0]) for side in sides
-    )
 
 
 def find_unit_suspect(record: T) -> T:

@@ -12,6 +12,7 @@ from inerter.diagnose.band import best_band, force_band, narrower_band, wider_ba
 from inerter.diagnose.bent_damping import is_bent
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.cannot_tell import hidden_by_force
+from inerter.diagnose.clipping import SATURATION, begun_clipped
 from inerter.diagnose.composition import (
     DRIVE,
     effects_of,
@@ -114,10 +115,12 @@ def search_in(start: Prepared, band: Preparation) -> Search:
     """A search in which errors count by the noise of the motion."""
     runs = weighed_runs(band)
     parted = split(runs, start.data.held, start.data.split.in_blocks)
+    records = start.data.records
+    never = hidden_by_force(records)
     return Search(
         runs, parted, start.baseline, start.given.progress, witness=start.data.witness,
-        one_tone=start.data.band.scales.one_tone, time=start.given.time,
-        never=hidden_by_force(start.data.records),
+        one_tone=start.data.band.scales.one_tone, time=start.given.time, never=never,
+        begin=None if SATURATION in never else begun_clipped(records, start.baseline),
     )  # fmt: skip
 
 
