@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from inerter.diagnose import diagnose_bench
-from inerter.diagnose.clipping import hides_nearly_all
+from inerter.diagnose.clipping import begun_clipped, hides_nearly_all
 from inerter.identify.model import Model
 from inerter.identify.runs import thin
 from inerter.records import Record
@@ -22,6 +22,30 @@ def pressed(seed: int = 0) -> Record:
         name="rod", time=time, displacement=x + random.normal(0, 2e-6, time.size),
         force=200.0 + 10.0 * np.tanh(v / 1e-3) + 30.0 * v + random.normal(0, 0.1, time.size),
     )  # fmt: skip
+
+
+def swung(peak: float, limit: float = np.inf) -> Record:
+    """20 kg along a sine, the force cut off at a limit."""
+    time = np.arange(0, 6, 1 / 250)
+    omega = 2 * np.pi * 2.0
+    force = -peak * np.sin(omega * time) + np.random.default_rng(2).normal(0, 0.3, time.size)
+    return Record(
+        name=f"{peak:g} N", time=time,
+        displacement=peak / (20.0 * omega**2) * np.sin(omega * time),
+        force=np.clip(np.round(force / 0.1) * 0.1, -limit, limit),
+    )  # fmt: skip
+
+
+def test_a_search_begins_at_limits_that_records_show() -> None:
+    ideal = Model("none", {"inertance": 20.0}, ("inertance",))
+    assert begun_clipped([swung(100.0), swung(50.0)], ideal) is None
+    begun = begun_clipped([swung(50.0), swung(100.0, 80.0)], ideal)
+    assert begun is not None
+    assert begun.free == ("inertance", "force_maximum", "force_minimum")
+    assert begun.values["force_maximum"] == pytest.approx(80.0, abs=1.0)
+    assert begun.values["force_minimum"] == pytest.approx(-80.0, abs=1.0)
+    # one that goes beyond has another range, and there is no limit of both
+    assert begun_clipped([swung(100.0), swung(100.0, 80.0)], ideal) is None
 
 
 @pytest.mark.parametrize(("lower", "expected"), [(150.0, False), (200.0, False), (215.0, True)])
