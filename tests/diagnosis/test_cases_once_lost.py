@@ -91,6 +91,8 @@ REALISTIC: dict[str, tuple[tuple[str, ...], int]] = {
     # with a drift of the force that a curve along the stroke drew, too
     "a gas behind a curve": (("gas_spring",), 1852777756),
     "a gas behind a curve and a delay": (("gas_spring", "position_force"), 3817478790),
+    # rests that were left out counted as telling a constant force from friction's two levels
+    "rests that do not count": (("asymmetric_friction",), 1554394902),
     # a third of a run is at the limits, and friction that falls with the speed drew its flat tops
     "a load behind flat tops": (("load_dependent_friction", "sensor_saturation"), 3600977752),
 }

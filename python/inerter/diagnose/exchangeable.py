@@ -173,9 +173,14 @@ def _is_worse(search: Search, instead: Fit, fit: Fit) -> bool:
 
 
 def rests(runs: Sequence[BenchRun]) -> float:
-    """Share of the samples at which nothing moves."""
-    speeds = [run.velocity if run.measured is None else run.measured[1] for run in runs]
-    return float(np.mean(np.concatenate(speeds) == 0.0))
+    """Share of the samples that count at which nothing moves."""
+    found = []
+    for run in runs:
+        speed = run.velocity
+        if run.measured is not None:
+            speed = run.measured[1][:: run.thinned * run.instants][: speed.size]
+        found.append(speed[run.inner] == 0.0)
+    return float(np.mean(np.concatenate(found)))
 
 
 def _bare(model: Model, effect: str, baseline: Model) -> Model:
