@@ -216,3 +216,15 @@ def test_benches_are_named_and_have_files_of_their_own() -> None:
     assert realistic.name == f"realistic-{ideal.name}"
     with pytest.raises(ValueError, match=r"--bench: 'dirty' is not one of ideal, realistic"):
         Plan(bench="dirty")
+
+
+def test_a_level_beside_what_is_uneven_or_a_constant_force_is_right() -> None:
+    uneven = outcome("single", ("asymmetric_friction",))
+    level = Named("coulomb_friction", None, 1.0)
+    either = Named("force_offset", None, 0.5, ("force_offset", "asymmetric_friction"))
+    told = replace(uneven, named=(level, either))
+    assert told.found
+    assert told.nothing_false
+    # that it is uneven has to be said
+    assert not replace(uneven, named=(level,)).nothing_false
+    assert not replace(uneven, named=(level, replace(either, members=()))).nothing_false

@@ -36,6 +36,8 @@ UNCOUNTED_LAWS = ("bouc_wen",)
 # of a gas spring the data see the force p0 A and the reach V0 / A
 GAS = ("gas_pressure", "gas_area", "gas_volume")
 
+_LEVEL, _UNEVEN = "coulomb_friction", "asymmetric_friction"
+
 
 @dataclass(frozen=True)
 class Named:
@@ -139,6 +141,9 @@ class Outcome:
     def is_right(self, named: Named) -> bool:
         """Whether a finding, or one that it cannot be told from, was hidden or the bench's own."""
         there = {*self.task.effects, *self.brings}
+        if _UNEVEN in there and any(_UNEVEN in each.members for each in self.named):
+            # the level, and what differs between the directions or is a constant force
+            there.add(_LEVEL)
         return named.effect in there or any(name in there for name in named.members)
 
     @property
