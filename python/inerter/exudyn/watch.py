@@ -194,7 +194,8 @@ def _mass_matrix(mbs: Any, settings: Any, models: list[Model]) -> Iterator[None]
 
 def _has_user_function(mbs: Any) -> bool:
     """Whether something of the user's is called in every step."""
-    asked = [getattr(mbs, f"Get{name}UserFunction", None) for name in _IN_A_RUN]
+    known = [name for name in _IN_A_RUN if hasattr(mbs, f"Set{name}UserFunction")]
+    asked = [getattr(mbs, f"Get{name}UserFunction", None) for name in known]
     # an Exudyn that cannot be asked may have one
     return any(ask is None or bool(ask()) for ask in asked)
 
