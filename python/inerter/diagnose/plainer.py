@@ -12,7 +12,7 @@ from inerter.catalogue.along_stroke import QUANTITIES, TURN
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import LAW_COORDINATES, LEVEL_COORDINATES
 from inerter.diagnose.bent_damping import SPRING, is_bent, knee_of, may_lag
-from inerter.diagnose.composition import PLAYS, level_and_distance
+from inerter.diagnose.composition import PLAYS, is_shaft, level_and_distance
 from inerter.diagnose.statistics import Array
 from inerter.identify.model import Model
 from inerter.identify.prediction import lateness
@@ -27,6 +27,8 @@ _NO_POWER = 0.3
 _FAR_BELOW = 0.05
 # laws of friction with a peak near rest, in the place of those without one
 _WITH_A_PEAK = {"coulomb": "stribeck", "dahl": "lugre", "lugre": "lugre"}
+# times by which a leak has to relax in the longest run
+_CAUGHT = 3.0
 # between slow (1) and quick (1.4)
 _EXPONENT = 1.3
 
@@ -72,6 +74,18 @@ def as_spring(model: Model) -> list[Model]:
         "force_offset": model.values.get("force_offset", 0.0) - stiffness * middle,
     }
     return [model.without(EFFECTS["end_stop"].coordinates).adding(None, **spring)]
+
+
+def keeps_its_start(effect: str, model: Model, longest: float, frequency: float) -> bool:
+    """Whether how a part moved as a run [s] began, which is free, lasts through all of it.
+
+    A shaft that swings on is any slow sine; a flywheel that a leak does not catch up with turns as
+    it did, and is a constant force of each run: what they add to the data is none of the motion's.
+    """
+    if is_shaft(effect) and swings_on(model, longest, frequency):
+        return True
+    corner = model.values["leak_corner"] if "leak_corner" in model.free else 0.0
+    return 0.0 < 2 * np.pi * corner * longest < _CAUGHT
 
 
 def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]:

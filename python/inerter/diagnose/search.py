@@ -33,7 +33,7 @@ from inerter.diagnose.exchange import exchanged, other_side, plain_part
 from inerter.diagnose.instead import instead
 from inerter.diagnose.left_out import Folds, left_out_errors
 from inerter.diagnose.low_passes import noise_taken, where_late
-from inerter.diagnose.plainer import swings_on
+from inerter.diagnose.plainer import keeps_its_start
 from inerter.diagnose.play import is_felt
 from inerter.diagnose.statistics import Array, block_squares
 from inerter.diagnose.time_limit import OverTimeError, TimeLimit
@@ -312,7 +312,7 @@ class Search:
             and not hides_nearly_all(s.model, self.runs)
             and self.is_felt(s.model)
             and self.may_be(s.model)
-            and not (is_shaft(s.effect) and swings_on(s.model, self.longest, sizes.frequency))
+            and not keeps_its_start(s.effect, s.model, self.longest, sizes.frequency)
             and along_stroke.is_there(s.model, self.problem)
             and not is_harmonic(s.model, sizes, self.longest)
         ]
