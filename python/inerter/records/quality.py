@@ -19,6 +19,7 @@ from inerter.motion_units import ROTATION, words
 from .clipping import find_clipping, stretches
 from .duplicates import find_duplicate_records
 from .even_clock import even_spacing
+from .header import split_header
 from .jumps import find_displacement_jumps
 from .record import Array, Columns, Record, TimeRecord
 
@@ -174,16 +175,24 @@ def _slow(record: Record) -> NDArray[np.bool_]:
     return speed < 0.05 * np.quantile(speed, 0.95)
 
 
+def _says_its_clock(record: TimeRecord) -> bool:
+    """Whether the unit of the time, or the time between samples, was given with a file."""
+    header = record.headers.get("time")
+    if header is None:
+        return bool(record.headers)
+    return split_header(header)[1] is not None
+
+
 def find_unit_suspect(record: T) -> T:
     """`unit_suspect`: magnitudes no bench or vehicle has.
 
-    Fewer than 5 or more than a million samples per second; a displacement or a suspension travel
-    over more than 5 m or faster than 30 m/s (95 % quantile); a force above 1e7 N; an
-    acceleration above 1e5 m/s^2 (99 % quantiles). Where a device turns: faster than 1e4 rad/s, a
-    torque above 1e7 N m, an acceleration above 1e7 rad/s^2.
+    Fewer than 5 samples per second, where no unit of the time was given, or more than a million; a
+    displacement or a suspension travel over more than 5 m or faster than 30 m/s (95 % quantile); a
+    force above 1e7 N; an acceleration above 1e5 m/s^2 (99 % quantiles). Where a device turns:
+    faster than 1e4 rad/s, a torque above 1e7 N m, an acceleration above 1e7 rad/s^2.
     """
     rate = record.sample_rate
-    if rate < 5.0:
+    if rate < 5.0 and not _says_its_clock(record):
         text = f"{rate:.3g} samples per second: is 'time' in ms? Then write time[ms]"
         record = record.warn("unit_suspect", text)
     elif rate > 1e6:

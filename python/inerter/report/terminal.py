@@ -7,6 +7,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
+from inerter.catalogue.coordinates import NUISANCES
 from inerter.diagnose.doubt import by_weight
 from inerter.diagnose.result import Diagnosis, ParameterValue
 from inerter.diagnose.wording import curves_in_words, departure
@@ -41,6 +42,8 @@ def summary(diagnosis: Diagnosis) -> RenderableType:
     ]
     if diagnosis.findings:
         parts.append(_findings(diagnosis))
+    if own := _own_values(diagnosis):
+        parts.append(own)
     parts.append(_records(diagnosis))
     return Group(*parts)
 
@@ -83,6 +86,18 @@ def _findings(diagnosis: Diagnosis) -> Table:
             text.confidence(finding.confidence),
         )
     return table
+
+
+def _own_values(diagnosis: Diagnosis) -> Text | None:
+    """What was fitted and is nothing that the simulation lacks, the inertance first of all."""
+    told = {name for finding in diagnosis.findings for name in finding.parameters}
+    own = {n: v for n, v in diagnosis.parameters.items() if n not in told and n not in NUISANCES}
+    curves, others = curves_in_words(own)
+    words = [f"{n} {text.with_error(v)}{_unknown(v)}" for n, v in others.items()]
+    words += curves.values()
+    if not words:
+        return None
+    return Text("The device itself  ", style="bold").append(_plain(", ".join(words), "not bold"))
 
 
 def _unknown(value: ParameterValue) -> str:
