@@ -130,3 +130,19 @@ def test_columns_that_are_nearly_alike_are_told_apart(apart: float, size: float)
         (-free, free), Tolerances(1e-14, 1e-14, 1e-14), 60,
     )  # fmt: skip
     np.testing.assert_allclose(found.variables, [1.0, 2.0 / size, 0.5], rtol=1e-6)
+
+
+def test_numbers_whose_squares_dwarf_the_rest_end_it_in_peace() -> None:
+    """What runs away on the way of a fit: a step below the smallest number was divided by."""
+    large = 1e100
+
+    def residual(p: Array) -> Array:
+        return np.array([large * (p[0] - 1.0), 1e-3 * np.sin(p[1])])
+
+    bounds = np.full(2, -5.0), np.full(2, 5.0)
+    columns = np.diag([large, 1e-3])
+    begin = np.array([0.3, 0.2])
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = trust_region(residual, lambda p: columns, begin, bounds, FINE, 50)
+    assert np.isfinite(found.variables).all()
+    assert np.all(np.abs(found.variables) < 5.0)

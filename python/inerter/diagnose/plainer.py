@@ -80,12 +80,16 @@ def keeps_its_start(effect: str, model: Model, longest: float, frequency: float)
     """Whether how a part moved as a run [s] began, which is free, lasts through all of it.
 
     A shaft that swings on is any slow sine; a flywheel that a leak does not catch up with turns as
-    it did, and is a constant force of each run: what they add to the data is none of the motion's.
+    it did, and is a constant force of each run, and so is a spring that does not relax: what they
+    add to the data is none of the motion's.
     """
     if is_shaft(effect) and swings_on(model, longest, frequency):
         return True
     corner = model.values["leak_corner"] if "leak_corner" in model.free else 0.0
-    return 0.0 < 2 * np.pi * corner * longest < _CAUGHT
+    if 0.0 < 2 * np.pi * corner * longest < _CAUGHT:
+        return True
+    times = (f"branch_time_{number}" for number in range(1, len(RELAXING) + 1))
+    return any(model.values[time] > longest for time in times if time in model.free)
 
 
 def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]:

@@ -155,6 +155,9 @@ class _Local:
             """Length of a step beyond the radius, and its slope over the damping."""
             divided = scaled / (self.sizes**2 + damping)
             length = float(np.linalg.norm(divided))
+            if not length:
+                # below the smallest number there is
+                return -radius, -math.inf
             return length - radius, -float(np.sum(divided**2 / (self.sizes**2 + damping))) / length
 
         value, slope = excess(0.0)
@@ -170,7 +173,8 @@ class _Local:
             if abs(value) < _MET * radius:
                 break
         step = -(scaled / (self.sizes**2 + guess)) @ self.right
-        return step * (radius / float(np.linalg.norm(step))), guess
+        length = float(np.linalg.norm(step))
+        return (step * (radius / length) if length else step), guess
 
     def inside(
         self, point: Array, step: Array, radius: float, bounds: Bounds, nearly: float

@@ -67,7 +67,7 @@ def tells(motion: Motion, facts: MotionFacts, warned: Collection[str] = ()) -> l
             Tell(
                 name=name, value=0.0, stderr=math.inf, unit=in_words(motion.motion, unit),
                 verdict="not told",
-                reason="what is clipped or a spike reaches most of the force through the low-pass",
+                reason="what is clipped or spikes reaches most of the force through the low-pass",
                 motion="a sensor of a wider range, or a weaker motion",
             )
             for name, (_, unit) in columns.items()
