@@ -345,3 +345,17 @@ def test_a_right_acceleration_is_not_doubted_at_any_rate(rate: float) -> None:
     assert not find_inconsistent_motion(record).warnings
     wrong = dataclasses.replace(record, acceleration=a / 9.81)
     assert [w.code for w in find_inconsistent_motion(wrong).warnings] == ["unit_suspect"]
+
+
+@pytest.mark.parametrize(("header", "asked"), [("time", True), ("time [s]", False)])
+def test_a_slow_clock_is_doubted_where_its_unit_was_not_given(
+    tmp_path: Path, header: str, asked: bool
+) -> None:
+    path = tmp_path / "slow.csv"
+    angle = np.arange(200) / 9.0
+    table = np.column_stack([np.arange(200.0), 5e-3 * np.sin(angle), 40.0 * np.cos(angle)])
+    np.savetxt(path, table, "%.6g", ",", header=f"{header},displacement,force", comments="")
+    (record,) = read_records(path)
+    told = [each.text for each in record.warnings if each.code == "unit_suspect"]
+    assert bool(told) is asked, told
+    assert all("is 'time' in ms?" in each for each in told)

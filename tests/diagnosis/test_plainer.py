@@ -17,6 +17,7 @@ from inerter.diagnose.plainer import (
     as_one_friction,
     as_plain_part,
     as_spring,
+    keeps_its_start,
     swings_on,
     with_own_spring,
 )
@@ -67,6 +68,28 @@ def test_a_branch_without_a_time_of_its_own_and_a_straight_curve_are_plain_parts
     assert plain.values["force_offset"] == pytest.approx(13.0)
     assert set(hard.free) - set(plain.free) == {"stiffness_cubic"}
     assert plain.values.keys().isdisjoint(nodes)
+
+
+@pytest.mark.parametrize(
+    ("effect", "name", "value", "expected"),
+    [
+        ("leak", "leak_corner", 0.02, True),
+        ("leak", "leak_corner", 0.03, False),
+        ("viscoelasticity", "branch_time_1", 21.0, True),
+        ("viscoelasticity", "branch_time_1", 19.0, False),
+        # found before, and on its way: no other effect is refused for that
+        ("coulomb_friction", "branch_time_1", 21.0, False),
+        ("coulomb_friction", "leak_corner", 0.02, False),
+    ],
+)
+def test_what_does_not_relax_in_the_record_keeps_its_start(
+    effect: str, name: str, value: float, expected: bool
+) -> None:
+    values = {"inertance": 60.0, "branch_stiffness_1": 2e3, name: value}
+    model = Model("none", values, tuple(values))
+    assert keeps_its_start(effect, model, 20.0, 3.0) is expected
+    # one that is stated, and held, is no question
+    assert not keeps_its_start(effect, Model("none", values, ("inertance",)), 20.0, 3.0)
 
 
 def test_a_shaft_is_rigid_or_a_spring_where_it_does_not_follow() -> None:

@@ -8,12 +8,17 @@ import numpy as np
 import pytest
 from hidden_vehicles import Car, records
 from inerter.diagnose.vehicle.build import UserModel, model_of_text, read_model
+from inerter.diagnose.vehicle.candidate import Scale, VehicleCandidate
 from inerter.diagnose.vehicle.diagnosis import diagnose_system
+from inerter.diagnose.vehicle.effects import Effects
 from inerter.diagnose.vehicle.mapping import map_columns
 from inerter.diagnose.vehicle.model import Added, VehicleModel
 from inerter.records import VehicleRecord
 
 CAR = Car()
+SCALE = Scale(
+    force=500.0, x=5e-3, v=0.1, a=5.0, largest=0.02, smallest=-0.02, step=2e-3, explicit=True
+)
 MODEL = f"""<mujoco><option timestep="0.002" integrator="RK4" gravity="0 0 0"/>
 <extension><plugin plugin="inerter.device"/></extension><worldbody>
 <body name="wheel"><joint name="wheel" type="slide" axis="0 0 1"/>
@@ -94,8 +99,31 @@ def test_a_damper_that_bends_may_differ_between_rebound_and_bump(
     built = user.compile(change)
     assert built.nactuator == user.model.nactuator
     assert np.all(built.tendon_damping == 0.0)
-    without = VehicleModel(values, free=())
-    assert without.bends("strut")
+
+
+def test_without_the_bend_the_straight_damper_is_there_again(tmp_path: Path) -> None:
+    user = model(tmp_path, 2000.0)
+    user.with_inputs(["road"])
+    effects, stated = Effects(user, {"strut": SCALE}), VehicleModel()
+
+    def of(change: VehicleModel) -> dict[tuple[str, str], VehicleCandidate]:
+        return {(c.added.effect, c.added.element): c for c in effects.candidates(change)}
+
+    bend = of(stated)["digressive_damping", "strut"]
+    bent = bend.model(stated, bend.starts[0])
+    assert user.compile(bent).tendon_damping[0] == 0.0
+    assert user.device_of("strut", bent).viscous == pytest.approx(2200.0)
+    assert bent.without(0) == stated
+    # a straight one beside it would say the same twice; one that was found before is in the bend
+    straight = "viscous_friction", "tendon:spring"
+    assert straight not in of(bent)
+    found = of(stated)[straight]
+    both = found.model(stated, {"tendon:spring.damping": 2500.0})
+    again = of(both)["digressive_damping", "strut"]
+    after = again.model(both, again.starts[0])
+    assert [added.effect for added in after.effects] == ["digressive_damping"]
+    assert "tendon:spring.damping" not in after.free
+    assert user.device_of("strut", after).viscous == pytest.approx(2750.0)
 
 
 def test_only_a_damper_that_moves_with_the_device_is_displaced(tmp_path: Path) -> None:

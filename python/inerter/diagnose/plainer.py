@@ -27,7 +27,7 @@ _NO_POWER = 0.3
 _FAR_BELOW = 0.05
 # laws of friction with a peak near rest, in the place of those without one
 _WITH_A_PEAK = {"coulomb": "stribeck", "dahl": "lugre", "lugre": "lugre"}
-# times by which a leak has to relax in the longest run
+# time constants of a leak that the longest run lasts at least: e^-3 of its beginning, 5 %, is left
 _CAUGHT = 3.0
 # between slow (1) and quick (1.4)
 _EXPONENT = 1.3
@@ -85,11 +85,11 @@ def keeps_its_start(effect: str, model: Model, longest: float, frequency: float)
     """
     if is_shaft(effect) and swings_on(model, longest, frequency):
         return True
-    corner = model.values["leak_corner"] if "leak_corner" in model.free else 0.0
-    if 0.0 < 2 * np.pi * corner * longest < _CAUGHT:
-        return True
-    times = (f"branch_time_{number}" for number in range(1, len(RELAXING) + 1))
-    return any(model.values[time] > longest for time in times if time in model.free)
+    # of the effect that is asked for alone: another one may be on its way
+    own = {*EFFECTS[effect].coordinates} & {*model.free} if effect in EFFECTS else set()
+    if "leak_corner" in own:
+        return 2 * np.pi * model.values["leak_corner"] * longest < _CAUGHT
+    return any(model.values[name] > longest for name in own if name.startswith("branch_time_"))
 
 
 def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]:

@@ -101,7 +101,8 @@ def _damper(effects: Effects, part: Suspension, model: VehicleModel) -> Iterator
     yield candidate(
         "damper_asymmetry", part.device, starts, sizes, ("rebound_damping", "bump_damping")
     )
-    if link.kind != "device":
+    # one that bends has all of the damping in the device
+    if link.kind != "device" and not model.bends(part.device):
         yield candidate(
             "viscous_friction", link.element, [{"damping": 1.05 * now}],
             {"damping": Range(now, 0.0)}, ("damping",),

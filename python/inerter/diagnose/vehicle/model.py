@@ -107,6 +107,25 @@ class VehicleModel:
         values = {**self.values, **values, **dict.fromkeys(gone, 0.0)}
         return VehicleModel(values, laws, old + names, (*kept, added))
 
+    def without(self, index: int) -> VehicleModel:
+        """The model without one of its effects, the others at their values.
+
+        What the effect stood in the place of is again as the user states it.
+        """
+        gone = self.effects[index]
+        rest = tuple(added for i, added in enumerate(self.effects) if i != index)
+        kept = {name for added in rest for name in added.coordinates}
+        lost = {*gone.coordinates, *gone.displaced} - kept
+        friction = dict(self.friction)
+        values = {k: v for k, v in self.values.items() if k not in lost}
+        if gone.is_friction_in(gone.element):
+            friction.pop(gone.element, None)
+            values.pop(f"{gone.element}.transition_velocity", None)
+        if gone.effect == "gas_spring":
+            values.pop(f"{gone.element}.gas_area", None)
+        free = tuple(name for name in self.free if name not in lost)
+        return VehicleModel(values, friction, free, rest)
+
     def bends(self, device: str) -> bool:
         """Whether a device's damping has been given a bend."""
         return f"{device}.damping_knee" in self.values

@@ -150,20 +150,7 @@ class VehicleSearch:
         self, scored: VehicleScored, index: int
     ) -> tuple[VehicleModel, Mapping[str, Range]]:
         """A model without one of its effects, the others at their values."""
-        model = scored.model
-        gone = model.effects[index]
-        rest = tuple(added for i, added in enumerate(model.effects) if i != index)
-        kept = {name for added in rest for name in added.coordinates}
-        lost = set(gone.coordinates) - kept
-        friction = dict(model.friction)
-        values = {k: v for k, v in model.values.items() if k not in lost}
-        if gone.is_friction_in(gone.element):
-            friction.pop(gone.element, None)
-            values.pop(f"{gone.element}.transition_velocity", None)
-        if gone.effect == "gas_spring":
-            values.pop(f"{gone.element}.gas_area", None)
-        free = tuple(name for name in model.free if name not in lost)
-        return VehicleModel(values, friction, free, rest), scored.fit.sizes
+        return scored.model.without(index), scored.fit.sizes
 
     def _score(self, fit: VehicleFit, candidate: VehicleCandidate | None = None) -> VehicleScored:
         rest = left_out(fit, self.blocks)

@@ -1,0 +1,37 @@
+"""What was found of the device itself is told beside what its simulation lacks."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+
+from inerter.diagnose import Diagnosis
+from inerter.diagnose.result import ParameterValue
+from inerter.report.terminal import print_summary
+from made_reports import two_runs
+from rich.console import Console
+
+
+def shown(diagnosis: Diagnosis) -> str:
+    seen = io.StringIO()
+    print_summary(diagnosis, Console(width=400, file=seen))
+    return seen.getvalue()
+
+
+def test_the_inertance_that_was_found_is_told_and_nothing_twice() -> None:
+    made = two_runs()
+    told = {name: value for each in made.findings for name, value in each.parameters.items()}
+    own = {
+        "inertance": ParameterValue(113.04, 0.21, "kg"),
+        "transition_velocity": ParameterValue(1e-3, 1e-4, "m/s"),
+    }
+    text = shown(replace(made, parameters={**told, **own}))
+    (line,) = [line for line in text.splitlines() if line.startswith("The device itself")]
+    assert "inertance 113.04 ± 0.21 kg" in line
+    # how wide sign(v) is says nothing, and what is lacking stands above
+    assert "transition_velocity" not in line
+    assert not any(name in line for name in told)
+    # of a stated device nothing was found
+    assert "The device itself" not in shown(replace(made, parameters=told))
+    # and where nothing is lacking it is told all the same
+    assert "inertance 113.04" in shown(replace(made, findings=[], parameters=own))
