@@ -126,6 +126,22 @@ def test_without_the_bend_the_straight_damper_is_there_again(tmp_path: Path) -> 
     assert user.device_of("strut", after).viscous == pytest.approx(2750.0)
 
 
+def test_a_bend_that_is_drawn_more_sharply_stays_where_it_was() -> None:
+    """What was found after it stands on it: each effect is judged on top of those before it."""
+    bend = Added("digressive_damping", "strut", ("strut.damping_knee",))
+    friction = Added("coulomb_friction", "strut", ("strut.coulomb_force",))
+    tyre = Added("tyre_stiffness_error", "tyre:road", ("tyre:road.tyre_stiffness",))
+    sharp = Added("digressive_damping", "strut", ("strut.damping_knee", "strut.damping_sharpness"))
+    found = VehicleModel()
+    for added in (tyre, bend, friction, sharp):
+        found = found.adding(added, dict.fromkeys(added.coordinates, 1.0))
+    assert found.effects == (tyre, sharp, friction)
+    assert set(found.free) == {*tyre.coordinates, *friction.coordinates, *sharp.coordinates}
+    # of another device it is another one
+    other = Added("digressive_damping", "rear", ("rear.damping_knee",))
+    assert found.adding(other, {"rear.damping_knee": 1.0}).effects[-1] == other
+
+
 def test_only_a_damper_that_moves_with_the_device_is_displaced(tmp_path: Path) -> None:
     text = MODEL.replace("DAMPING", "2000.0").replace("OWN", "")
     beside = text.replace(

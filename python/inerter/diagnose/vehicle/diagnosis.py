@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from inerter.diagnose.doubt import doubted
-from inerter.diagnose.result import Finding, RecordSummary
+from inerter.diagnose.result import Finding, ParameterValue, RecordSummary
 from inerter.diagnose.statistics import gain_interval, win_shares
 from inerter.diagnose.vehicle import wording
 from inerter.diagnose.vehicle.build import UserModel, model_of_text
@@ -22,7 +22,7 @@ from inerter.diagnose.vehicle.effects import Effects, Scale
 from inerter.diagnose.vehicle.judging import block_squares, stacked_blocks
 from inerter.diagnose.vehicle.mapping import Channels
 from inerter.diagnose.vehicle.members import exchangeable, with_members
-from inerter.diagnose.vehicle.model import TYRES, VehicleModel
+from inerter.diagnose.vehicle.model import TYRES, Added, VehicleModel
 from inerter.diagnose.vehicle.outcome import ChannelError, SystemAccuracy, SystemDiagnosis
 from inerter.diagnose.vehicle.polarity import polarity
 from inerter.diagnose.vehicle.problem import ComparedChannel, DrivenProblem
@@ -288,11 +288,15 @@ class _System:
             kind, _, name = added.element.partition(":")
             place = (name or kind) if (several and kind != "body") or kind in NAMED else ""
             finding = replace(finding, evidence=wording.evidence(finding, place))
-            finding = with_members(
-                finding, [(s.model.effects[-1], parameter_values(self.user, s)[-1]) for s in same]
-            )
+            finding = with_members(finding, [self._own_values(each) for each in same])
             found.append((finding, place))
         return sorted(found, key=lambda pair: -pair[0].gain)
+
+    def _own_values(self, scored: VehicleScored) -> tuple[Added, dict[str, ParameterValue]]:
+        """What a fit adds, and the values that it would have."""
+        assert scored.candidate is not None
+        added = scored.candidate.added
+        return added, parameter_values(self.user, scored)[scored.model.effects.index(added)]
 
     # --- the result --------------------------------------------------------------------------
 

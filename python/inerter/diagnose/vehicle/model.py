@@ -103,9 +103,13 @@ class VehicleModel:
         names = tuple(n for n in added.coordinates if n not in old)
 
         # friction laws replace one another, a gap has the series element in it; the rest adds up
-        kept = tuple(e for e in self.effects if not added.replaces(e))
+        kept = [e for e in self.effects if not added.replaces(e)]
         values = {**self.values, **values, **dict.fromkeys(gone, 0.0)}
-        return VehicleModel(values, laws, old + names, (*kept, added))
+        # a bend that is drawn more sharply stays where it was: what came after it needs it
+        same = [(e.effect, e.element) == (BENT, added.element) for e in self.effects]
+        first = same.index(True) if added.effect == BENT and any(same) else len(same)
+        place = sum(not added.replaces(e) for e in self.effects[:first])
+        return VehicleModel(values, laws, old + names, (*kept[:place], added, *kept[place:]))
 
     def without(self, index: int) -> VehicleModel:
         """The model without one of its effects, the others at their values.

@@ -17,11 +17,11 @@ def step_of(steps: Sequence[Step], added: Added, final: VehicleScored) -> Step |
 
     Of friction that took the place of a richer law's at the end, that one's, as a rival.
     """
-    last = [(step, step.chosen.model.effects[-1]) for step in steps]
-    for step, own in last:
+    made = [(step, step.chosen.candidate.added) for step in steps if step.chosen.candidate]
+    for step, own in made:
         if own == added:
             return step
-    for step, own in last:
+    for step, own in made:
         if (own.effect, added.effect) == (FALLING, PLAIN) and own.element == added.element:
             others = [step.chosen]
             for other in step.others:
