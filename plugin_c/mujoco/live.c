@@ -9,6 +9,9 @@
 
 #include "mujoco/units.h"
 
+// level [N] that friction has where a live one is 0: none, without another law
+static const double kOpen = 1e-30;
+
 static double* value_of(InerterDevice* device, int parameter) {
   return (double*)(void*)((char*)device + inerter_parameter(parameter)->offset);
 }
@@ -168,7 +171,15 @@ int live_derive(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_S
     *value_of(&self->device, live->parameter) = live->value;
     inerter_mark_given(&self->device, live->parameter);
   }
-  if (inerter_finish(&self->device, message)) {
+  InerterDevice* device = &self->device;
+  int open = device->friction != INERTER_FRICTION_none && device->coulomb_force == 0;
+  if (open && instance_is_live(self, INERTER_INDEX_coulomb_force)) {
+    device->coulomb_force = kOpen;
+    if (inerter_is_given(device, INERTER_INDEX_static_force) && device->static_force == 0) {
+      device->static_force = kOpen;
+    }
+  }
+  if (inerter_finish(device, message)) {
     return -1;
   }
   int nstate = inerter_nstate(&self->device), actdim = m->actuator_actnum[self->actuator];

@@ -2,6 +2,8 @@
 
 #include "mujoco/sensor.h"
 
+#include <math.h>
+
 #include "mujoco/coupled.h"
 
 int sensor_size(int nstate) {
@@ -49,6 +51,8 @@ void sensor_compute(const mjModel* m, mjData* d, int instance) {
     mju_copy(value, state, nstate);
     value += nstate;
     *value++ = inerter_stored_energy(device, instance_displacement(m, d, self), v, state);
-    *value = d->plugin_state[m->plugin_stateadr[instance]];
+    // one that is no number is said and set to 0 at the end of the step
+    mjtNum heat = d->plugin_state[m->plugin_stateadr[instance]];
+    *value = isfinite(heat) ? heat : 0;
   }
 }

@@ -21,6 +21,8 @@ from inerter.plugin import plugin_path
 PLUGIN = "inerter.device"
 # what the compiled model calls it: the second name where no sensor reads the device
 _COMPILED = (PLUGIN.encode(), f"{PLUGIN}.quiet".encode())
+# level [N] of friction that a live one of 0 stands for, as in the plugin
+_OPEN = 1e-30
 # what states the inertance of a fluid in its channel
 _CHANNEL = {"piston_area", "channel_area", "channel_length", "fluid_density"}
 
@@ -94,6 +96,10 @@ class DeviceInModel:
             size = int(model.numeric_size[np.flatnonzero(model.numeric_adr == place)[0]])
             values = model.numeric_data[place : place + size].tolist()
             found[key] = value_text(values) if key in lists() else values[0]
+        if self.device.friction != "none" and found.get("coulomb_force") == 0.0:
+            found["coulomb_force"] = _OPEN
+            if found.get("static_force") == 0.0:
+                found["static_force"] = _OPEN
         return found
 
     def _edited(self, model: mujoco.MjModel) -> dict[str, float]:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
 from inerter.engine_errors import SimulationError
+from inerter.simulate.inputs import read_inputs
 from inerter.simulate.run import run_model
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
 from simulate_models import EXTENSION, columns, device, oscillator, written
 
 SINGLE_STAGE = ("Euler", "implicit", "implicitfast", "discrete")
@@ -38,6 +42,68 @@ def test_an_imposed_joint_accelerates_what_hangs_on_it(tmp_path: Path) -> None:
     expected = -0.02 * (2 * np.pi) ** 2 * np.cos(2 * np.pi * run.time)
     middle = slice(20, -20)
     assert np.abs(columns(run)["acceleration"] - expected)[middle].max() < 1e-3 * 0.8
+
+
+@pytest.mark.parametrize(
+    ("integrator", "within"), [("RK4", 1e-4), ("implicitfast", 5e-3), ("Euler", 5e-3)]
+)
+def test_what_hangs_on_a_light_base_does_not_move_it(
+    tmp_path: Path, integrator: str, within: float
+) -> None:
+    """A storey of 1000 kg on a base of 10 kg sways as the ground that is prescribed makes it."""
+    m, k, c = 1000.0, 1e5, 200.0
+    xml = f"""
+<mujoco>
+  <option gravity="0 0 0" timestep="1e-3" integrator="{integrator}"/>{EXTENSION}
+  <worldbody>
+    <body name="base"><joint name="ground" type="slide" axis="1 0 0"/><geom size=".1" mass="10"/>
+      <body name="floor" pos="0 0 3">
+        <joint name="x" type="slide" axis="1 0 0" stiffness="{k}" damping="{c}"/>
+        <geom size=".5" mass="{m}"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator>{device(inertance=1e-3)}</actuator>
+</mujoco>"""
+    t = np.arange(0, 4.001, 0.01)
+    ground = 0.01 * np.sin(2 * np.pi * 1.5 * t) * np.minimum(t, 1) ** 3
+    np.savetxt(tmp_path / "g.csv", np.c_[t, ground], delimiter=",", header="time,ground",
+               comments="")  # fmt: skip
+    run = run_model(written(tmp_path, xml), control=tmp_path / "g.csv")
+    felt = CubicSpline(t, ground)
+    sway = solve_ivp(
+        lambda at, y: [y[1], -felt(at, 2) - (k * y[0] + c * y[1]) / m], (0, 4), [0.0, 0.0],
+        rtol=1e-9, atol=1e-12, max_step=0.01, t_eval=run.time,
+    ).y[0]  # fmt: skip
+    assert np.abs(run.joints["x"] - sway).max() < within * np.abs(sway).max()
+
+
+@pytest.mark.parametrize(
+    ("unit", "size"),
+    [("g", 9.80665), ("%g", 0.0980665), ("mg", 9.80665e-3), ("Gal", 0.01), ("gal", 0.01),
+     ("m/s^2", 1.0), ("cm/s^2", 0.01), ("g_0", 9.80665)],
+)  # fmt: skip
+def test_the_ground_of_an_accelerogram_is_an_acceleration(
+    tmp_path: Path, unit: str, size: float
+) -> None:
+    """Where the control of a motor along several masses says nothing of its quantity."""
+    path = written(
+        tmp_path,
+        """
+<mujoco><worldbody>
+  <body><joint name="a" type="slide" axis="1 0 0"/><geom size=".1" mass="20"/></body>
+  <body><joint name="b" type="slide" axis="1 0 0"/><geom size=".1" mass="30"/></body></worldbody>
+  <tendon><fixed name="masses"><joint joint="a" coef="-20"/><joint joint="b" coef="-30"/></fixed>
+  </tendon><actuator><motor name="ground" tendon="masses"/></actuator></mujoco>""",
+    )
+    model = mujoco.MjModel.from_xml_path(str(path))
+    table = tmp_path / "quake.csv"
+    table.write_text(f"time,ground[{unit}]\n0,0\n1,2\n")
+    assert read_inputs(table, model).controls[0][-1] == pytest.approx(2 * size)
+    for wrong, what in (("kg", "a mass"), ("gallon", "a volume")):
+        table.write_text(f"time,ground[{wrong}]\n0,0\n1,2\n")
+        with pytest.raises(SimulationError, match=f"'{wrong}' is {what}"):
+            read_inputs(table, model)
 
 
 def test_mocap_bodies_are_moved_and_what_they_cannot_do_is_told(tmp_path: Path) -> None:

@@ -61,7 +61,7 @@ def instance_actuator(
     keys: Mapping[str, float | str], target: str = 'tendon="strut"', name: str = "strut"
 ) -> tuple[str, str, str]:
     """A device that a sensor reads: the texts for extension, actuator and sensor."""
-    states = int(keys.get("friction") in ("dahl", "lugre", "bouc_wen"))
+    states = int(keys.get("friction") in ("dahl", "lugre", "bouc_wen", "rate_state"))
     config = "".join(f'<config key="{key}" value="{value}"/>' for key, value in keys.items())
     actdim = f' actdim="{states}"' if states else ""
     return (

@@ -81,6 +81,7 @@ def test_a_heat_that_is_no_number(capfd: pytest.CaptureFixture, integrator: str)
     data.plugin_state[0] = np.nan
     for each in (data, sound):
         mujoco.mj_step(model, each)
+    assert np.isfinite(data.sensordata).all()
     assert said(capfd).count("its dissipated energy is nan J") == 1
     assert data.plugin_state[0] == 0
     counted = sound.plugin_state[0]

@@ -58,6 +58,42 @@ def test_a_channel_changes_its_inertance(key: str, integrator: str) -> None:
         assert device_of(model, "strut").now(model).inertance == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize(
+    ("law", "states", "more"),
+    [
+        ("coulomb", 0, {}),
+        ("stribeck", 0, {"static_force": 5.0}),
+        ("brown_mcphee", 0, {"static_force": 5.0}),
+        ("dahl", 1, {"bristle_stiffness": 1e5}),
+        ("lugre", 1, {"bristle_stiffness": 1e5}),
+        ("rate_state", 1, {}),
+    ],
+)
+def test_a_level_of_friction_may_be_none(
+    law: str, states: int, more: dict[str, float], integrator: str
+) -> None:
+    level = {"coulomb_force": 5.0, **({"static_force": 5.0} if "static_force" in more else {})}
+    keys = {"friction": law, "inertance": 4, **more, **level}
+    model = slide(keys, dict.fromkeys(level, 0.0), integrator)
+    data = mujoco.MjData(model)
+    assert data.act.size == states
+    for size in (0.0, 5.0, 0.0):
+        mujoco.mj_resetData(model, data)
+        model.numeric_data[:] = size
+        data.qvel[0], data.qfrc_applied[0] = 0.5, FORCE
+        for _ in range(100):
+            mujoco.mj_step(model, data)
+        gained = (data.qvel[0] - 0.5) * (MASS + 4) / (100 * model.opt.timestep)
+        if size:
+            assert FORCE - 6 < gained < FORCE - 3
+        else:
+            assert gained == pytest.approx(FORCE, rel=1e-9)
+        assert np.isfinite(data.sensordata).all()
+        now = device_of(model, "strut").now(model)
+        assert now.coulomb_force == pytest.approx(size, abs=1e-20)
+
+
 def test_an_edited_armature_is_no_channel() -> None:
     model = slide(CHANNEL, {})
     place = device_of(model, "strut")

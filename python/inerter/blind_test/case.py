@@ -371,13 +371,16 @@ def _gas_reported(
 
 
 def gain_on_truth(case: HiddenCase, diagnosis: Diagnosis) -> float | None:
-    """1 - after / before: rms errors against the noise-free force, held-out samples."""
+    """1 - after / before: rms errors against the channel's force without noise, held-out samples.
+
+    What the channel adds (a filter, hum) is in it: the diagnosis has it for a cause, too.
+    """
     before = after = 0.0
     runs = {run.name: run for run in case.runs}
     for curve in diagnosis.curves:
         run = runs[curve.name]
         judged = curve.inner & curve.holdout
-        truth = np.interp(curve.time, run.time, run.truth.force)[judged]
+        truth = np.interp(curve.time, run.time, run.shown)[judged]
         before += float(np.sum((curve.baseline[judged] - truth) ** 2))
         after += float(np.sum((curve.extended[judged] - truth) ** 2))
     return 1.0 - float(np.sqrt(after / before)) if before > 0.0 else None

@@ -19,7 +19,7 @@ from .header import bare_name, bench_unit, named_as, split_header
 from .raw_table import listed
 from .record import Array, RecordError
 from .turning import OWN_NAMES, UNITS, turns
-from .units import _GRAVITY, QUANTITIES, TURNING, motion_of_unit, si_factor
+from .units import ACCELERATIONS, QUANTITIES, TURNING, motion_of_unit, si_factor
 
 ROLES = ("measured", "leave out")
 LETTERS = ("u", "x")  # that stand for the values of the column itself
@@ -163,7 +163,7 @@ def _formula(text: str, where: str) -> Statement:
 
 
 def _unit(unit: str, where: str) -> str:
-    if unit in _GRAVITY or parse_unit(unit) is not None:
+    if unit in ACCELERATIONS or parse_unit(unit) is not None:
         return unit
     spelled = bench_unit(unit)
     if spelled is None:

@@ -22,7 +22,7 @@ from .record import AnyRecord, Array, RecordError, TimeRecord
 from .runs import Part, split_runs
 from .stated import stated_of
 from .table import read_table
-from .units import _GRAVITY, QUANTITIES, si_factor, split_header
+from .units import ACCELERATIONS, QUANTITIES, si_factor, split_header
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -179,10 +179,10 @@ def _factor(table: RawTable, index: int, name: str, quantity: str) -> float:
         f"{where}: {unit!r} is no unit of what the model's sensor gives, {quantity}; correct the "
         "unit, or map the column to another sensor by --sensor"
     )
-    if unit in _GRAVITY:
+    if unit in ACCELERATIONS:
         if quantity not in ("", "m/s^2"):
             raise wrong
-        return _GRAVITY[unit] * 9.80665
+        return ACCELERATIONS[unit]
     parsed = parse_unit(unit)
     if parsed is None:
         raise RecordError(f"{where}: unknown unit {unit!r}; write an SI unit, or leave it out")

@@ -63,8 +63,13 @@ _OF_UNIT = {q.unit: q for q in (ANGLE, TORQUE, ANGULAR_SPEED, ANGULAR_ACCELERATI
 TURNING: dict[str, Quantity] = {name: _OF_UNIT[unit] for name, unit in UNITS.items()}
 """What the columns of a device that turns hold."""
 
-# what test benches call accelerations; pint reads g as a gram
-_GRAVITY = {"g": 1.0, "G": 1.0, "gn": 1.0, "g0": 1.0, "g_n": 1.0, "mg": 1e-3, "ug": 1e-6}
+# what benches and seismographs call accelerations [m/s^2]; pint reads a gram, a gallon
+_GRAVITIES = {
+    "g": 1.0, "G": 1.0, "gn": 1.0, "g0": 1.0, "g_n": 1.0, "g's": 1.0, "mg": 1e-3, "ug": 1e-6,
+    "%g": 1e-2,
+}  # fmt: skip
+ACCELERATIONS = {unit: 9.80665 * size for unit, size in _GRAVITIES.items()}
+ACCELERATIONS |= {"Gal": 1e-2, "gal": 1e-2, "mGal": 1e-5, "mgal": 1e-5}
 
 
 def quantity_in(motion: Kind, name: str) -> Quantity:
@@ -76,7 +81,7 @@ def motion_of_unit(name: str, unit: str | None) -> Kind | None:
     """The motion that the unit of a column tells; None where it tells none."""
     if unit is None or name not in TURNING:
         return None
-    if name.startswith("acceleration") and unit in _GRAVITY:
+    if name.startswith("acceleration") and unit in ACCELERATIONS:
         return TRANSLATION
     parsed = parse_unit(unit)
     if parsed is None:
@@ -98,8 +103,8 @@ def si_factor(name: str, unit: str | None, where: str, column: str = "NAME") -> 
     quantity = QUANTITIES[name]
     if unit is None or unit == quantity.unit:
         return 1.0
-    if quantity is ACCELERATION and unit in _GRAVITY:
-        return _GRAVITY[unit] * 9.80665
+    if quantity is ACCELERATION and unit in ACCELERATIONS:
+        return ACCELERATIONS[unit]
     parsed = parse_unit(unit)
     if parsed is None:
         raise RecordError(

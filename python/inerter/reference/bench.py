@@ -56,7 +56,11 @@ class NoiseLevels:
 
 @dataclass(frozen=True, kw_only=True)
 class HiddenRun:
-    """One run: what the sensors saw, arrays of shape (n,), and the truth behind it."""
+    """One run: what the sensors saw, arrays of shape (n,), and the truth behind it.
+
+    shown: the force that the sensors would have seen without noise and converter; truth: the
+    device's own, at the same times.
+    """
 
     name: str
     kind: str
@@ -64,6 +68,7 @@ class HiddenRun:
     time: NDArray[np.float64]
     displacement: NDArray[np.float64]
     force: NDArray[np.float64]
+    shown: NDArray[np.float64] = field(repr=False)
     truth: Response = field(repr=False)
 
 
@@ -266,6 +271,7 @@ def record_case(
                 time=clock,
                 displacement=displacement,
                 force=force,
+                shown=channel.clip(felt),
                 truth=final,
             )
         )

@@ -13,7 +13,9 @@ tau is applied such that the joint has the prescribed acceleration:
     qacc_j(tau) = r''(t)     found by Newton steps with the response d(qacc_j)/d(tau_k)
 
 [tau]: N or N m. So the bodies that hang on the joint feel its acceleration. Setting the position
-alone would let them fall as if the joint were free between two steps.
+alone would let them fall as if the joint were free between two steps. tau is held over a step,
+while what hangs on the joint pulls at it differently from stage to stage: the joint is given an
+armature that outweighs all of that, which moves nothing else, as its own motion is prescribed.
 Not modelled: what drives the joint; its force is whatever is needed.
 
 A tyre with damping (`inerter.cars.mjcf`) takes the road's height plus its lead times its rate; the
@@ -36,13 +38,16 @@ from inerter.engine_errors import SimulationError
 from inerter.records import RecordError
 from inerter.records.raw_table import RawTable
 from inerter.records.table import read_table
-from inerter.records.units import LENGTH, QUANTITIES, Quantity, split_header
+from inerter.records.units import ACCELERATIONS, LENGTH, QUANTITIES, Quantity, split_header
 from inerter.simulate.load import scalar_joints
-from inerter.simulate.quantities import quantity_of_control, quantity_of_joint
+from inerter.simulate.quantities import no_control, quantity_of_control, quantity_of_joint
 from inerter.unit_text import parse_unit, unit_registry
 
 Array = NDArray[np.float64]
 _AXES = ("x", "y", "z")
+
+# armature of an imposed joint per inertia of what hangs on it
+_OUTWEIGHS = 1e9
 
 
 @dataclass(kw_only=True)
@@ -67,6 +72,11 @@ class Inputs:
     def duration(self) -> float:
         """Length of the table [s]."""
         return float(self.times[-1])
+
+    def outweigh(self, model: mujoco.MjModel) -> None:
+        """Give the imposed joints of a model their armature, once, before the first step."""
+        dofs = model.jnt_dofadr[list(self.joints)]
+        model.dof_armature[dofs] += _OUTWEIGHS * model.dof_M0[dofs]
 
     def apply(self, model: mujoco.MjModel, data: mujoco.MjData, t: float, ahead: float) -> None:
         """Set every input for the instant t [s] since the start.
@@ -251,6 +261,8 @@ def _numbers(
         raise SimulationError(f"{table.path}: {place}: column {header!r} has no number there")
     if unit is None:
         return values
+    if quantity is None and unit in ACCELERATIONS:
+        return values * ACCELERATIONS[unit]
     parsed = parse_unit(unit)
     if parsed is None:
         raise SimulationError(f"{table.path}: column {header!r}: unknown unit {unit!r}")
@@ -259,5 +271,10 @@ def _numbers(
             f"{table.path}: column {header!r}: {driven} is {quantity.meaning}, and {unit!r} is no "
             f"unit of one; write for example one of: {quantity.allowed}, or leave it out for "
             f"{quantity.unit}"
+        )
+    if quantity is None and (what := no_control(parsed)):
+        raise SimulationError(
+            f"{table.path}: column {header!r}: {unit!r} is {what}, and {driven} is none; write for "
+            "example one of: N, m, rad, m/s^2, g (standard gravity), Gal, or leave it out"
         )
     return unit_registry().Quantity(values, parsed).to_base_units().magnitude.astype(float)

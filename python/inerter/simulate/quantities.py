@@ -9,11 +9,14 @@ Any other control (a gear that is a mass, so that the control is an acceleration
 
 from __future__ import annotations
 
+from typing import Any
+
 import mujoco
 import numpy as np
 
 from inerter.device_in_model import devices_of
 from inerter.records.units import FORCE, LENGTH, SPEED, Quantity
+from inerter.unit_text import parse_unit
 
 _ANGLE = Quantity("an angle", "rad", "rad, deg")
 _TORQUE = Quantity("a torque", "N*m", "N*m, kN*m, N*mm")
@@ -56,6 +59,17 @@ def quantity_of_control(model: mujoco.MjModel, actuator: int) -> Quantity | None
     if bias[1] == -gain:
         return along[_POSITION]
     return along[_VELOCITY] if bias[1] == 0 and bias[2] == -gain else None
+
+
+def no_control(unit: Any) -> str | None:
+    """What a unit measures, in words, where no actuator of a model takes that.
+
+    pint reads the g of an accelerogram as a gram where it stands in a longer unit, too.
+    """
+    for what, measured in (("a mass", "kg"), ("a volume", "m^3")):
+        if unit.dimensionality == parse_unit(measured).dimensionality:
+            return what
+    return None
 
 
 def _transmission(model: mujoco.MjModel, actuator: int) -> tuple[Quantity, ...] | None:

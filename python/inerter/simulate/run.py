@@ -118,6 +118,8 @@ def _plan(
 ) -> _Plan:
     data = start(model, keyframe)
     inputs = read_inputs(control, model) if control else None
+    if inputs:
+        inputs.outweigh(model)
     if duration is None:
         duration = inputs.duration if inputs else DEFAULT_DURATION
     if not 0 < duration < 1e9:

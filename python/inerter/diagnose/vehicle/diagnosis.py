@@ -365,7 +365,8 @@ class _System:
         return list(map(float, rms))
 
     def _summaries(self) -> list[RecordSummary]:
-        held = {drive.name for drive in self.held.drives} if len(self.records) > 1 else set()
+        learnt = {drive.name for drive in self.fit.drives}
+        held = {drive.name for drive in self.held.drives} - learnt
         return [
             RecordSummary(
                 record.name,

@@ -27,7 +27,7 @@ from inerter.diagnose.statistics import advantage, win_shares
 from inerter.diagnose.vehicle.candidate import VehicleCandidate
 from inerter.diagnose.vehicle.effects import Effects
 from inerter.diagnose.vehicle.judging import block_squares, left_out, stacked_blocks, won
-from inerter.diagnose.vehicle.model import Added, VehicleModel
+from inerter.diagnose.vehicle.model import BENT, Added, VehicleModel
 from inerter.diagnose.vehicle.problem import DrivenProblem, VehicleFit, fit_all
 from inerter.estimation.covariance import sandwich
 
@@ -44,6 +44,8 @@ BEGUN = 8.0
 WORTH = 0.005
 # candidates further behind the best after two steps than this are not fitted to the end
 NEAR = 1.5
+# steps of a fit that goes along a narrow valley
+TO_THE_END = 16
 PLAIN, FALLING = EFFECTS["coulomb_friction"].name, EFFECTS["stribeck_friction"].name
 # steps of a start's own size that its effect may be scaled by
 _LARGEST_SCALE = 30.0
@@ -128,11 +130,11 @@ class VehicleSearch:
         return np.hypot(floor, 2 * self.step_error(current.model)) > current.fit.error
 
     def refit(
-        self, models: Sequence[tuple[VehicleModel, Mapping[str, Range]]]
+        self, models: Sequence[tuple[VehicleModel, Mapping[str, Range]]], iterations: int = 6
     ) -> list[VehicleScored]:
         """Fit models again and score them."""
-        near = self._begin(models, iterations=6)
-        return [self._score(fit) for fit in fit_all(self.problem, near)]
+        near = self._begin(models, iterations)
+        return [self._score(fit) for fit in fit_all(self.problem, near, iterations)]
 
     def _begin(
         self, models: Sequence[tuple[VehicleModel, Mapping[str, Range]]], iterations: int
@@ -330,13 +332,16 @@ class VehicleSearch:
         without: tuple[VehicleModel, Mapping[str, Range]],
         current: VehicleScored,
         added: Added,
-    ) -> list[tuple[VehicleModel, Mapping[str, Range]]]:
-        """A model with friction that does not fall with the speed in the place of one that does."""
+    ) -> list[VehicleScored]:
+        """Fits with friction that does not fall with the speed in the place of one that does.
+
+        What falls beside a bend that is rounded may be its corner, which is sharper.
+        """
         level = f"{added.element}.coulomb_force"
         if added.effect != FALLING or level not in current.model.values:
             return []
         model, sizes = without
-        return [
+        trials = [
             (each.model(model, {**start, level: current.model.values[level]}),
              {**sizes, **each.sizes})
             for each in self.effects.candidates(model)
@@ -344,6 +349,30 @@ class VehicleSearch:
             and each.amplitudes
             for start in each.starts
         ]  # fmt: skip
+        # where plain friction ended when it was tried beside it
+        tried = [
+            other.model.values
+            for step in self.steps
+            if step.chosen.candidate is not None and step.chosen.candidate.added == added
+            for other in step.others
+            if other.candidate is not None
+            and (other.candidate.added.effect, other.candidate.added.element)
+            == (PLAIN, added.element)
+        ]
+        trials += [
+            (base.at({n: values[n] for n in base.free if n in values}), own)
+            for base, own in trials
+            for values in tried
+        ]
+        plain = self.refit(trials)
+        sharpness = f"{added.element}.damping_sharpness"
+        sharper = [
+            (each.model(fit.model, each.starts[-1]), {**fit.fit.sizes, **each.sizes})
+            for fit in plain
+            for each in self.effects.candidates(fit.model)
+            if each.added.effect == BENT and sharpness in each.added.coordinates
+        ]
+        return plain + self.refit(sharper, TO_THE_END)
 
     def _prune(self, current: VehicleScored) -> VehicleScored:
         """Take away what the others have made unnecessary."""
@@ -351,14 +380,14 @@ class VehicleSearch:
             self.progress("checking that every effect is still needed")
             effects = current.model.effects
             trials = [self.without(current, i) for i in range(len(effects))]
-            told = [*effects]
-            for i, added in enumerate(effects):
-                plainer = self._plainer_friction(trials[i], current, added)
-                trials += plainer
+            fits, told = self.refit(trials), [*effects]
+            for trial, added in zip(trials, effects, strict=True):
+                plainer = self._plainer_friction(trial, current, added)
+                fits += plainer
                 told += [added] * len(plainer)
             simpler = [
                 scored
-                for scored, added in zip(self.refit(trials), told, strict=True)
+                for scored, added in zip(fits, told, strict=True)
                 if not_needed(
                     scored, current, won(self.problem, scored.rest, current.rest, added.effect, 0.0)
                 )
@@ -366,6 +395,8 @@ class VehicleSearch:
             if not simpler:
                 return current
             current = min(simpler, key=lambda scored: scored.squares.sum())
+            last = fit_all(self.problem, [(current.model, current.fit.sizes)], TO_THE_END, 1e-4)[0]
+            current = self._score(last, current.candidate)
         return current
 
 

@@ -9,6 +9,9 @@ import numpy as np
 from inerter.diagnose.vehicle.drive import RecordedDrive
 from inerter.identify.split import Mask, held_blocks, held_runs, may_be_held
 
+# a channel of one of two runs is so many times the other's where one cannot stand for the other
+MUCH_LARGER = 1.5
+
 
 def split_drives(
     drives: Sequence[RecordedDrive], holdout: Sequence[str]
@@ -17,6 +20,8 @@ def split_drives(
 
     Of several runs, whole ones are held out: the named ones, else the one whose size is nearest to
     the others'. Of a single run, blocks: the whole road is simulated, some blocks do not count.
+    Of two runs of which one is much larger, too, blocks of both: a damper bends in the larger one
+    alone, friction shows most in the other.
 
     Raises
     ------
@@ -26,6 +31,9 @@ def split_drives(
     names = [drive.name for drive in drives]
     chosen = held_runs(names, holdout)
     whole = [np.ones(drive.time.size, bool) for drive in drives]
+    if len(drives) == 2 and not chosen and _differ(drives):
+        both = [held_blocks(mask, "every run") for mask in whole]
+        return [~mask for mask, _ in both], [mask for mask, _ in both], both[0][1]
     if len(drives) > 1:
         held = chosen or {_most_typical(drives)}
         fit = [~m if i in held else m for i, m in enumerate(whole)]
@@ -33,6 +41,12 @@ def split_drives(
         return fit, out, "held out: " + ", ".join(names[i] for i in sorted(held))
     mask, text = held_blocks(whole[0], names[0])
     return [~mask], [mask], text
+
+
+def _differ(drives: Sequence[RecordedDrive]) -> bool:
+    """Whether a channel of one of two runs is much larger than the other's."""
+    one, other = (np.std(drive.measured, axis=0) + 1e-300 for drive in drives)
+    return bool(np.max(np.abs(np.log(one / other))) > np.log(MUCH_LARGER))
 
 
 def _most_typical(drives: Sequence[RecordedDrive]) -> int:

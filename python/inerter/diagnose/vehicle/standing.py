@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.result import Rival
 from inerter.diagnose.statistics import win_shares
-from inerter.diagnose.vehicle.model import Added
+from inerter.diagnose.vehicle.model import BENT, Added
 from inerter.diagnose.vehicle.search import FALLING, PLAIN, Step, VehicleScored
 from inerter.diagnose.vehicle.wording import EQUIVALENT
 
@@ -15,13 +15,16 @@ from inerter.diagnose.vehicle.wording import EQUIVALENT
 def step_of(steps: Sequence[Step], added: Added, final: VehicleScored) -> Step | None:
     """The step in which an effect of the final model was added.
 
-    Of friction that took the place of a richer law's at the end, that one's, as a rival.
+    Of friction that took the place of a richer law's at the end, that one's, as a rival; of a bend
+    that was drawn more sharply then, the bend's.
     """
     made = [(step, step.chosen.candidate.added) for step in steps if step.chosen.candidate]
     for step, own in made:
         if own == added:
             return step
     for step, own in made:
+        if own.effect == added.effect == BENT and own.element == added.element:
+            return step
         if (own.effect, added.effect) == (FALLING, PLAIN) and own.element == added.element:
             others = [step.chosen]
             for other in step.others:
