@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -10,9 +13,13 @@ from hidden_vehicles import Car, records
 from inerter.diagnose.vehicle.build import UserModel, model_of_text, read_model
 from inerter.diagnose.vehicle.candidate import Scale, VehicleCandidate
 from inerter.diagnose.vehicle.diagnosis import diagnose_system
+from inerter.diagnose.vehicle.drive import RecordedDrive
 from inerter.diagnose.vehicle.effects import Effects
 from inerter.diagnose.vehicle.mapping import map_columns
 from inerter.diagnose.vehicle.model import Added, VehicleModel
+from inerter.diagnose.vehicle.search import VehicleScored
+from inerter.diagnose.vehicle.split import split_drives
+from inerter.diagnose.vehicle.values import parameter_values
 from inerter.records import VehicleRecord
 
 CAR = Car()
@@ -140,6 +147,69 @@ def test_a_bend_that_is_drawn_more_sharply_stays_where_it_was() -> None:
     # of another device it is another one
     other = Added("digressive_damping", "rear", ("rear.damping_knee",))
     assert found.adding(other, {"rear.damping_knee": 1.0}).effects[-1] == other
+
+
+@pytest.mark.long
+def test_a_small_and_a_large_run_tell_friction_and_a_corner(tmp_path: Path) -> None:
+    """In the small one the damper hardly bends, in the large one friction hardly shows."""
+    car = Car(damping=3000.0, knee=0.12, beyond=0.4, coulomb_force=60.0)
+    user = model(tmp_path, 2600.0)
+    small, large = drives(car, amplitude=0.1)[0], drives(car, amplitude=0.4)[1]
+    runs = [replace(small, name="small"), replace(large, name="large")]
+    columns = list(runs[0].channels())
+    found = diagnose_system(runs, user, map_columns(user.model, columns, {}, {}))
+    assert {each.effect for each in found.findings} == {"digressive_damping", "coulomb_friction"}
+    true = {"viscous": 3000.0, "damping_knee": 0.12, "damping_beyond": 0.4, "coulomb_force": 60.0}
+    for name, value in true.items():
+        told = found.parameters[name]
+        assert told.value == pytest.approx(value, abs=max(4 * told.stderr, 0.03 * value)), name
+    assert found.extended.rmse < 1.1 * found.noise_floor
+    # both were learnt from
+    assert [record.role for record in found.records] == ["fit", "fit"]
+
+
+def test_of_two_runs_of_different_size_blocks_of_both_are_held_out() -> None:
+    def run(name: str, size: float) -> RecordedDrive:
+        measured = size * np.random.default_rng(1).normal(size=(1000, 2))
+        return cast(
+            RecordedDrive, SimpleNamespace(name=name, time=np.arange(1000.0), measured=measured)
+        )
+
+    fit, held, text = split_drives([run("a", 1.0), run("b", 1.2)], ())
+    assert sorted(mask.mean() for mask in held) == [0.0, 1.0]
+    fit, held, text = split_drives([run("a", 1.0), run("b", 2.0)], ())
+    assert text == "held out: blocks 4, 7, 9 of 10 of every run"
+    for own, left in zip(fit, held, strict=True):
+        assert left.mean() == pytest.approx(0.3)
+        assert (own ^ left).all()
+    # what a user names is held out as a whole
+    assert split_drives([run("a", 1.0), run("b", 2.0)], ["b"])[2] == "held out: b"
+
+
+def test_a_value_at_the_end_of_its_range_has_an_error(tmp_path: Path) -> None:
+    """The sharpest corner there is: derivatives are taken inward."""
+    user = model(tmp_path, 2000.0)
+    user.with_inputs(["road"])
+    effects, stated = Effects(user, {"strut": SCALE}), VehicleModel()
+
+    def bend(change: VehicleModel) -> VehicleCandidate:
+        each = [c for c in effects.candidates(change) if c.added.effect == "digressive_damping"]
+        return each[0]
+
+    first = bend(stated)
+    bent = first.model(stated, first.starts[0])
+    again = bend(bent)
+    sharpest = again.model(bent, {**again.starts[-1], "strut.damping_sharpness": 64.0})
+    assert "strut.damping_sharpness" in sharpest.free
+    random = np.random.default_rng(2)
+    fit = SimpleNamespace(
+        residual=random.normal(size=300), jacobian=random.normal(size=(300, len(sharpest.free))),
+        units=lambda: np.ones(len(sharpest.free)), sizes={**first.sizes, **again.sizes},
+    )  # fmt: skip
+    scored = cast(VehicleScored, SimpleNamespace(model=sharpest, fit=fit))
+    told = parameter_values(user, scored)[0]["damping_sharpness"]
+    assert told.value == 64.0
+    assert 0.0 < told.stderr < 1.0
 
 
 def test_only_a_damper_that_moves_with_the_device_is_displaced(tmp_path: Path) -> None:

@@ -244,9 +244,11 @@ class VehicleSearch:
         widths = []
         for name in base.free:
             size = current.fit.sizes[name]
-            point = size.encode(base.values[name])
-            moved.append(base.at({name: size.decode(point + 1e-3)}))
-            widths.append(1e-3)
+            point, width = size.encode(base.values[name]), 1e-3
+            if size.decode(point + width) >= size.upper:
+                width = -width
+            moved.append(base.at({name: size.decode(point + width)}))
+            widths.append(width)
         rows = self.part.stacked([base, *moved, *(c.model(base, s) for c, s in pairs)])
         residual, rows = rows[0], rows[1:]
         known = np.nan_to_num(rows[: len(moved)] - residual) / np.array([*widths, 1.0])[:-1, None]

@@ -82,6 +82,8 @@ def parameter_values(
             if not name.startswith(f"{added.element}."):
                 continue
             step = 1e-5 * (abs(model.values[name]) or units[i])
+            if model.values[name] + step > scored.fit.sizes[name].upper:
+                step = -step
             moved = model.at({name: model.values[name] + step})
             for key, value in _read(user, moved, added.element, own).items():
                 if key in slopes:
