@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from inerter.estimation.covariance import sandwich
 from scipy.signal import lfilter
 
@@ -72,3 +73,32 @@ def test_what_one_block_tells_alone_is_not_endless() -> None:
     )
     assert np.all(np.isfinite(alone))
     assert scored[1] < alone[1] <= 10.1 * scored[1]
+
+
+@pytest.mark.parametrize("memory", [0, 400])
+def test_what_lasts_longer_than_a_block_widens_the_errors(memory: int) -> None:
+    """Two standard errors hold where what is left wanders slowly, and are no wider else."""
+    random = np.random.default_rng(3)
+    n, trials = 6000, 300
+    columns = np.column_stack([np.ones(n), np.sin(np.arange(n) / 900.0)])
+    solve = np.linalg.pinv(columns)
+    estimates, told, plain = [], [], []
+    for _ in range(trials):
+        rest = random.normal(size=n + memory)
+        if memory:
+            # blocks have 100 samples
+            rest = lfilter([1.0], [1.0, -np.exp(-1.0 / memory)], random.normal(size=n + 4000))
+        rest = rest[-n:]
+        estimate = solve @ rest
+        residual, even = rest - columns @ estimate, np.ones(n)
+        estimates.append(estimate)
+        told.append(np.sqrt(np.diag(sandwich(columns, residual, even, left_out=True))))
+        plain.append(np.sqrt(np.diag(sandwich(columns, residual, even))))
+    spread = np.std(estimates, axis=0)
+    ratio, before = np.mean(told, axis=0) / spread, np.mean(plain, axis=0) / spread
+    if memory:
+        assert (before < 0.5).all(), "blocks alone"
+        assert (ratio > 1.6 * before).all()
+        assert (ratio < 1.1).all()
+    else:
+        assert (np.abs(ratio - 1.0) < 0.12).all()
