@@ -35,3 +35,16 @@ def test_the_inertance_that_was_found_is_told_and_nothing_twice() -> None:
     assert "The device itself" not in shown(replace(made, parameters=told))
     # and where nothing is lacking it is told all the same
     assert "inertance 113.04" in shown(replace(made, findings=[], parameters=own))
+
+
+def test_a_phase_near_zero_is_known_and_a_size_below_its_error_is_not() -> None:
+    own = {
+        "inertance": ParameterValue(2.0, 3.0, "kg"),
+        "force_phase_1": ParameterValue(-0.0007, 0.0022, "rad"),
+        "force_phase_2": ParameterValue(0.5, 1.2, "rad"),
+    }
+    text = shown(replace(two_runs(), findings=[], parameters=own))
+    (line,) = [line for line in text.splitlines() if line.startswith("The device itself")]
+    assert "inertance 2 ± 3 kg (not determined)" in line.replace("2.0 ± 3.0", "2 ± 3")
+    assert line.count("(not determined)") == 2
+    assert "force_phase_1 -0.0007 ± 0.0022 rad," in line.replace("−", "-")

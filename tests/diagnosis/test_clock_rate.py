@@ -21,11 +21,11 @@ def bench(
     runs: int = 2,
     coulomb: float = 15.0,
 ) -> list[Record]:
-    """60 kg, 90 N s/m and Coulomb friction [N]; the force's clock gains the rate."""
+    """60 kg, 90 N s/m and Coulomb friction [N]; the force's clock loses the rate."""
     draw, found = np.random.default_rng([seed, 23]), []
     for i in range(runs):
         phases = np.random.default_rng([seed, 24, i])
-        # what the force's logger writes at t is the force at (1 + rate) t
+        # what the force's logger writes at t is the force at (1 + rate) t: its clock is slow
         _, v, a = moved(phases, TIME * (1 + rate), frequencies, 4e-3)
         force = 60 * a + 90 * v + coulomb * np.tanh(v / 1e-3)
         phases = np.random.default_rng([seed, 24, i])
@@ -43,7 +43,7 @@ def test_its_rate_is_told_and_put_right(rate: float, effects_seed: int) -> None:
     assert found is not None
     assert found.stderr < 0.01 * abs(rate)
     assert found.value == pytest.approx(rate, abs=5 * found.stderr)
-    assert f" % {'fast' if rate > 0 else 'slow'} against" in found.in_words()
+    assert f" % {'slow' if rate > 0 else 'fast'} against" in found.in_words()
     true = bench(effects_seed, 0.0)
     for before, after, each in zip(records, right, true, strict=True):
         inner = slice(500, after.samples - 500)

@@ -53,6 +53,24 @@ def test_two_files_are_brought_together(lag: float, tmp_path: Path) -> None:
     assert np.std(record.velocity - true) < 2e-3 * np.ptp(true)
 
 
+def test_an_accelerometer_that_begins_in_the_motion_is_brought_together(tmp_path: Path) -> None:
+    """Its velocity is known up to a constant: how fast it moved when the card began."""
+    later = np.arange(2.0, 3.5, 0.001)
+    begun = float(later[np.argmax(np.abs(moved(later)[1]))])
+    time = np.arange(0, 6.0, 1 / 1000)
+    v = moved(time + begun)[1]
+    assert abs(v[0]) > np.sqrt(np.mean(v**2))
+    a = np.gradient(v, time) + 1e-3 * np.random.default_rng(2).standard_normal(time.size)
+    second = tmp_path / "sensor.csv"
+    np.savetxt(second, np.column_stack([time, a]), delimiter=",", header="time,acceleration",
+               comments="", fmt="%.9g")  # fmt: skip
+    with reading(partner=second):
+        (record,) = read_records(card(tmp_path / "card.csv"), "bench")
+    assert record.acceleration is not None
+    found = float(record.reading.split("its clock ")[1].split(" s ±")[0])
+    assert found == pytest.approx(begun, abs=2e-3)
+
+
 def test_the_partner_of_a_folder_is_no_record(tmp_path: Path) -> None:
     card(tmp_path / "card.csv")
     servo(tmp_path / "servo.csv", 0.1)

@@ -1,4 +1,4 @@
-"""A force channel whose clock runs faster or slower than that of the displacement.
+"""A force channel whose clock runs slower or faster than that of the displacement.
 
 Two loggers, put together by their first sample: what is a delay grows through the record, to tens
 of milliseconds. No effect is like that, and everything that goes with the velocity is wrong by it.
@@ -39,7 +39,7 @@ _TELLING, _AGAIN = 5, 2
 
 @dataclass(frozen=True)
 class ClockRate:
-    """By which share the clock of the force runs faster than that of the displacement.
+    """By which share the clock of the force runs slower than that of the displacement.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class ClockRate:
 
     def in_words(self) -> str:
         """A sentence for the verdict."""
-        how = "fast" if self.value > 0 else "slow"
+        how = "slow" if self.value > 0 else "fast"
         percent = measured(100 * abs(self.value), 100 * self.stderr)
         return (
             f"The clock of the force channel runs {percent} % {how} against that of the "
@@ -89,7 +89,7 @@ def on_one_clock(records: Sequence[Record]) -> tuple[Sequence[Record], ClockRate
 
 
 def clock_rate(motions: Sequence[Motion]) -> ClockRate | None:
-    """The rate at which the force gains time in some runs; None where none is sure."""
+    """The rate at which the force comes early in some runs; None where none is sure."""
     value, error, better = _rate(motions)
     shifted = abs(value) * max(float(m.spacing * m.displacement.size) for m in motions)
     little = shifted < SHIFTED * max(m.spacing for m in motions)
@@ -124,7 +124,7 @@ def _rate(motions: Sequence[Motion]) -> tuple[float, float, float]:
     )
     # in most stretches, for in one alone something else may be missed
     better = float(np.median(along / np.maximum(fixed, 1e-300)))
-    # a force that is ever earlier is on a clock that runs fast
+    # a force that is ever earlier is on a slow clock: it shows t when (1 + r) t has gone
     return -float(solved[0]), error, better
 
 

@@ -117,7 +117,9 @@ def find_lag(path: Path, mine: dict[str, Array], other: Path, theirs: dict[str, 
     step = max(min(steps), max(np.ptp(c["time"]) for c in (mine, theirs)) / _MOST)
     width = max(steps) / step
     a, b = (_velocity(place, c, step, width) for place, c in ((path, mine), (other, theirs)))
-    lags, r = _correlations(a, b)
+    # the speed at which an accelerometer began is known to nobody
+    began = any(_source(columns) == "acceleration" for columns in (mine, theirs))
+    lags, r = _correlations(a, b, began)
     if not len(lags):
         raise RecordError(f"{path}: no motion that {other} has seen, too; give files of one test")
     # of a motion that repeats, half a period with the other sign is as good: the same sign is meant
@@ -148,7 +150,7 @@ def find_lag(path: Path, mine: dict[str, Array], other: Path, theirs: dict[str, 
 
 def _velocity(path: Path, columns: dict[str, Array], step: float, width: float) -> Array:
     """The velocity on an even clock, behind a filter that is the same for both files."""
-    name = next((name for name in _SHARED if name in columns), None)
+    name = _source(columns)
     if name is None:
         raise RecordError(
             f"{path}: no displacement, velocity or acceleration is known, by which two files of a "
@@ -164,8 +166,18 @@ def _velocity(path: Path, columns: dict[str, Array], step: float, width: float) 
     return gaussian_filter1d(even, max(width, 1.0), order=order) / step**order
 
 
-def _correlations(a: Array, b: Array) -> tuple[Array, Array]:
-    """Lags in samples of b behind a, and the correlation in the overlap at each."""
+def _source(columns: dict[str, Array]) -> str | None:
+    """The channel that the motion of a file is taken from."""
+    return next((name for name in _SHARED if name in columns), None)
+
+
+def _correlations(a: Array, b: Array, centred: bool = False) -> tuple[Array, Array]:
+    """Lags in samples of b behind a, and the correlation in the overlap at each.
+
+    centred: about the means there, for velocities that are known up to a constant.
+    """
+    if centred:
+        a, b = a - a.mean(), b - b.mean()
     size = int(next_fast_len(len(a) + len(b), real=True) or 0)
 
     def slide(x: Array, y: Array) -> Array:
@@ -175,6 +187,11 @@ def _correlations(a: Array, b: Array) -> tuple[Array, Array]:
     ones = (np.ones(len(a)), np.ones(len(b)))
     cross, energy_a, energy_b = slide(a, b), slide(a**2, ones[1]), slide(ones[0], b**2)
     lags = np.arange(-len(b) + 1, len(a))
+    if centred:
+        samples = np.maximum(np.round(slide(*ones)), 1.0)
+        sum_a, sum_b = slide(a, ones[1]), slide(ones[0], b)
+        cross = cross - sum_a * sum_b / samples
+        energy_a, energy_b = energy_a - sum_a**2 / samples, energy_b - sum_b**2 / samples
     enough = (energy_a > LEAST_ENERGY * np.sum(a**2)) & (energy_b > LEAST_ENERGY * np.sum(b**2))
     # b may have seen more or less than a: of one of them nearly all has to be there
     r = cross[enough] / np.sqrt(energy_a[enough] * energy_b[enough])

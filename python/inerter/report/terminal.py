@@ -16,6 +16,9 @@ from inerter.report import text
 from inerter.report.runs import role
 from inerter.report.subject import subject
 
+# standard error of a phase [rad] up to which it is known: an eighth of a turn
+_KNOWN_PHASE = 0.8
+
 
 def print_summary(diagnosis: Diagnosis, console: Console) -> None:
     """Print `summary` on a console."""
@@ -69,7 +72,7 @@ def _findings(diagnosis: Diagnosis) -> Table:
         values = "\n".join(
             [
                 *(
-                    f"{n} {text.with_error(v)}{_departure(v)}{_unknown(v)}"
+                    f"{n} {text.with_error(v)}{_departure(v)}{_unknown(n, v)}"
                     for n, v in others.items()
                 ),
                 *curves.values(),
@@ -93,16 +96,20 @@ def _own_values(diagnosis: Diagnosis) -> Text | None:
     told = {name for finding in diagnosis.findings for name in finding.parameters}
     own = {n: v for n, v in diagnosis.parameters.items() if n not in told and n not in NUISANCES}
     curves, others = curves_in_words(own)
-    words = [f"{n} {text.with_error(v)}{_unknown(v)}" for n, v in others.items()]
+    words = [f"{n} {text.with_error(v)}{_unknown(n, v)}" for n, v in others.items()]
     words += curves.values()
     if not words:
         return None
     return Text("The device itself  ", style="bold").append(_plain(", ".join(words), "not bold"))
 
 
-def _unknown(value: ParameterValue) -> str:
-    """That a value is smaller than its error, in brackets; empty where it is not."""
-    return " (not determined)" if value.stderr > abs(value.value) else ""
+def _unknown(name: str, value: ParameterValue) -> str:
+    """That a value is smaller than its error, in brackets; empty where it is not.
+
+    A phase has no size: it is unknown where its error is a large part of a turn.
+    """
+    size = _KNOWN_PHASE if "phase" in name else abs(value.value)
+    return " (not determined)" if value.stderr > size else ""
 
 
 def _departure(value: ParameterValue) -> str:
