@@ -70,3 +70,21 @@ def test_one_run_differs_from_nothing(effects_seed: int) -> None:
     x, v, a = moved(draw, TIME, (0.6, 1.3), (5e-3, 5e-3))
     run = run_of("alone", x, v, a)
     assert run_values([run], [9.0 * np.sign(v)], NOISE, MODEL).in_words() == ""
+
+
+def test_along_one_speed_a_level_is_no_damping(effects_seed: int) -> None:
+    """Of triangles: friction with memory that was more in the first run, as it turns slowly."""
+    draw = np.random.default_rng([effects_seed, 19])
+    v = 0.02 * np.tanh(np.sin(2 * np.pi * 0.5 * TIME) / 0.3)
+    x, a = np.cumsum(v) / 200, np.gradient(v, 1 / 200)
+    runs = [run_of(f"run {i}", x, v, a) for i in range(3)]
+    errors = [
+        (4.0 if i == 0 else 0.0) * v / 0.02 + NOISE * draw.standard_normal(TIME.size)
+        for i in range(3)
+    ]
+    found = run_values(runs, errors, NOISE, MODEL)
+    assert found.dampings == {}
+    assert found.levels["run 0"][0] == pytest.approx(24.0, abs=1.0)
+    # where nothing rubs it is a damping
+    damped = Model("none", {"inertance": 60.0, "viscous": 90.0}, ("inertance",))
+    assert run_values(runs, errors, NOISE, damped).dampings["run 0"][0] == pytest.approx(290, abs=9)

@@ -31,6 +31,8 @@ SURE, LEAST, SHARE = 8.0, 0.02, 0.5
 LEAST_OF_FRICTION = 0.1
 # stretches of a run that count as independent; share of its largest speed at which it turns
 STRETCHES, TURNS = 12, 0.03
+# correlation of a velocity with its sign above which it has one size (a sine's is 0.90)
+ONE_SPEED = 0.95
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,9 +82,12 @@ def run_values(
     if inertances := _inertances(runs, errors, noise, model):
         return RunValues(inertances=inertances)
 
-    def level(run: BenchRun) -> list[Array]:
+    def way(run: BenchRun) -> Array:
         slow = TURNS * float(np.max(np.abs(run.velocity[run.inner])))
-        return [np.tanh(run.velocity / (slow or 1.0)), run.acceleration, run.displacement]
+        return np.tanh(run.velocity / (slow or 1.0))
+
+    def level(run: BenchRun) -> list[Array]:
+        return [way(run), run.acceleration, run.displacement]
 
     def viscous(run: BenchRun) -> list[Array]:
         return [run.velocity, run.acceleration, run.displacement]
@@ -92,9 +97,19 @@ def run_values(
         _apart(runs, errors, noise, value, LEAST_OF_FRICTION, columns, relative=True)
         for value, columns in zip(known, (level, viscous), strict=True)
     )
+    # along one speed a damping is a level of friction
+    rubs = model.friction != "none"
+    if rubs and all(_one_speed(run.velocity[run.inner], way(run)[run.inner]) for run in runs):
+        return RunValues(levels=levels[0])
     if levels[1] >= dampings[1]:
         return RunValues(levels=levels[0])
     return RunValues(dampings=dampings[0])
+
+
+def _one_speed(velocity: Array, way: Array) -> bool:
+    """Whether a velocity (n,) hardly differs in size, so that its sign (n,) says all of it."""
+    power = float(np.sum(velocity**2) * np.sum(way**2))
+    return float(np.sum(velocity * way)) ** 2 > ONE_SPEED**2 * power
 
 
 def _inertances(
