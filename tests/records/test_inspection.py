@@ -208,3 +208,22 @@ def test_a_linear_model_that_is_astray_bounds_nothing() -> None:
     viscous = told["viscous friction"]
     assert viscous.reason != found[0].reason
     assert abs(viscous.value - 900) < 4 * viscous.stderr
+
+
+def test_friction_with_memory_is_no_negative_inertance() -> None:
+    """60 N of Dahl friction and 5 kg along rounded triangles: a linear model tells neither."""
+    rng = np.random.default_rng(8)
+    t = np.asarray(2e-3 * np.arange(2500), dtype=np.float64)
+    v = 0.04 * np.tanh(np.sin(2 * np.pi * t) / 0.15)
+    x = np.cumsum(v) * 2e-3
+    friction, steps = np.zeros(t.size), np.diff(x, prepend=x[0])
+    for k in range(1, t.size):
+        way = np.sign(steps[k])
+        friction[k] = 60 * way + (friction[k - 1] - 60 * way) * np.exp(-4e5 / 60 * abs(steps[k]))
+    force = friction + 5 * np.gradient(v, 2e-3) + rng.normal(0, 0.3, t.size)
+    found = facts_of(Record(name="run", time=t, displacement=x, force=force)).tells
+    told = {tell.name: tell for tell in found}
+    assert told["inertance"].value < 0
+    assert {tell.verdict for tell in found} == {"not told"}
+    (said,) = clauses(found)
+    assert "a linear model makes the inertance negative" in said

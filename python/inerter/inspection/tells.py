@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -100,11 +100,26 @@ def tells(motion: Motion, facts: MotionFacts, warned: Collection[str] = ()) -> l
     stderrs = np.sqrt(np.maximum(np.diag(inverse) * variance, 0))
     # what is not linear shows otherwise in each part of the record
     stderrs = np.maximum(stderrs, _over_blocks(scaled, force))
-    return [
+    return _possible([
         _tell(name, units[name], weights[k] / scale[k], stderrs[k] / scale[k],
               _own_share(scaled[:, :-1], k), facts, _closest(scaled[:, :-1], k, names))
         for k, name in enumerate(names)
-    ]  # fmt: skip
+    ])  # fmt: skip
+
+
+def _possible(told: list[Tell]) -> list[Tell]:
+    """Nothing is told by a linear model that makes the inertance negative, and nothing else.
+
+    A force that lags, as friction with memory does, looks so.
+    """
+    sure = {tell.name: tell.value > 0 for tell in told if tell.verdict == "told"}
+    if sure.get("inertance", True) or not any(sure.values()):
+        return told
+    reason = "a linear model makes the inertance negative, other laws act"
+    return [
+        replace(tell, verdict="not told", reason=reason, motion="the laws of `inerter diagnose`")
+        for tell in told
+    ]
 
 
 def _astray(rest: Array, force: Array, motion: Motion) -> bool:
