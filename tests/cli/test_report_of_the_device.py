@@ -5,8 +5,10 @@ from __future__ import annotations
 import io
 from dataclasses import replace
 
+import numpy as np
 from inerter.diagnose import Diagnosis
 from inerter.diagnose.result import ParameterValue
+from inerter.report.runs import role
 from inerter.report.terminal import print_summary
 from made_reports import two_runs
 from rich.console import Console
@@ -48,3 +50,18 @@ def test_a_phase_near_zero_is_known_and_a_size_below_its_error_is_not() -> None:
     assert "inertance 2 ± 3 kg (not determined)" in line.replace("2.0 ± 3.0", "2 ± 3")
     assert line.count("(not determined)") == 2
     assert "force_phase_1 -0.0007 ± 0.0022 rad," in line.replace("−", "-")
+
+
+def test_a_run_of_which_blocks_are_held_out_is_partly_held_out() -> None:
+    """Of a bench the run has one curve, of a vehicle one for each channel."""
+    made = two_runs()
+    whole = made.curves[0]
+    some = np.arange(whole.time.size) % 10 < 3
+    blocks = replace(whole, holdout=some)
+    record = replace(made.records[0], name=whole.name, role="fit")
+    for name in (whole.name, f"{whole.name}: wheel acceleration"):
+        told = replace(made, curves=[replace(blocks, name=name)])
+        assert role(record, told) == "partly held out"
+    # a run whose name begins alike is another
+    other = replace(made, curves=[replace(blocks, name=f"{whole.name}2: body")])
+    assert role(record, other) == "fitted"

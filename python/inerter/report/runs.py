@@ -42,8 +42,10 @@ def part_held_out(run: RunCurves) -> str:
 
 def role(record: RecordSummary, diagnosis: Diagnosis) -> str:
     """How a record was used, in words."""
-    for run in diagnosis.curves:
-        if run.name == record.name:
+    # of a vehicle each channel of a run has curves
+    alone, channel = record.name, f"{record.name}: "
+    for run in sorted(diagnosis.curves, key=lambda run: run.name != alone):
+        if run.name == alone or run.name.startswith(channel):
             return part_held_out(run)
     if diagnosis.points is not None and record.role == "fit":
         # of a table's frequencies some are held out
