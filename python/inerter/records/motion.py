@@ -7,7 +7,8 @@ The smoother is the minimiser of
 solved in the frequency domain: a zero-phase low-pass with response 1 / (1 + (f / f_c)^6), the
 smoothing spline of order five for uniform samples, which also weighs measured velocity and
 acceleration in where they are there. It is linear: the same low-pass applied to the force leaves
-every linear force law unbiased, however low the cut-off (`lowpass`).
+every linear force law unbiased, however low the cut-off (`lowpass`). Where the motion rests its
+noise is taken off besides (`rests.held_still`).
 
 At both ends the record is continued as an odd function about its end point. That is right where the
 motion rests; elsewhere the result near the end depends on this guess, and `Motion.inner` leaves
@@ -30,7 +31,7 @@ from inerter.core_library import library
 from inerter.motion_units import TRANSLATION, Kind
 from inerter.records.even_clock import even_spacing
 from inerter.records.record import Part, Record
-from inerter.records.rests import LEAKS, at_rest, long_stretches
+from inerter.records.rests import LEAKS, at_rest, held_still, long_stretches
 
 Array = NDArray[np.float64]
 Shaft = tuple[float, float]
@@ -375,6 +376,8 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
     if record.slowest:
         inner &= ~long_stretches(np.abs(velocity) < record.slowest, spacing, cutoff, LEAKS)
     velocity_noise, acceleration_noise = _derivative_noise(x, spacing, cutoff)
+    motion = displacement, velocity, acceleration
+    displacement, velocity, acceleration = held_still(x, motion, spacing, cutoff, velocity_noise)
     return Motion(
         name=record.name,
         start=float(record.time[0]),
