@@ -194,8 +194,10 @@ def test_along_is_its_samples_one_by_one(law: str) -> None:
     found = device.along(h, x, v, a, state=1e-5 if device.nstate else 0.0)
     z = 1e-5
     for i in range(x.size):
-        if i and device.nstate:
-            z = device.step(0.5 * (x[i] + x[i - 1]), (x[i] - x[i - 1]) / h, z, h)
+        for start, end, time in (
+            ways(x[i - 1 : i + 1], v[i - 1 : i + 1], h) if device.nstate else ()
+        ):
+            z = device.step(0.5 * (start + end), (end - start) / time, z, time)
         alone = device.evaluate(x[i], v[i], a[i], z)
         assert found["total"][i] == pytest.approx(alone["total"][0], rel=1e-13)
         assert found["friction"][i] == pytest.approx(alone["friction"][0], rel=1e-13, abs=1e-15)

@@ -94,6 +94,24 @@ def test_a_level_of_friction_may_be_none(
         assert now.coulomb_force == pytest.approx(size, abs=1e-20)
 
 
+@pytest.mark.parametrize(
+    "slips", [{"leak_damping": 1000.0}, {"leak_quadratic_damping": 50.0}, {"clutch_force": 20.0}]
+)
+def test_a_flywheel_behind_what_slips_is_as_stated(slips: dict[str, float]) -> None:
+    """There it is a state: the engine's armature is not its inertance."""
+    device = inerter.Device(inertance=50, **slips)
+    config = "".join(f'<config key="{k}" value="{v}"/>' for k, v in device.given.items())
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><extension><plugin plugin="inerter.device"/></extension>
+        <worldbody><body><joint name="x" type="slide"/><geom size="0.1" mass="{MASS}"/></body>
+        </worldbody><actuator><plugin name="strut" plugin="inerter.device" joint="x"
+        actdim="{device.nstate}">{config}</plugin></actuator></mujoco>"""
+    )
+    now = device_of(model, "strut").now(model)
+    assert now.inertance == 50
+    assert now.given.items() >= slips.items()
+
+
 def test_an_edited_armature_is_no_channel() -> None:
     model = slide(CHANNEL, {})
     place = device_of(model, "strut")

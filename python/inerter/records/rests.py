@@ -10,6 +10,9 @@ Array = NDArray[np.float64]
 # velocity of a rest per rms noise; memories that it lasts at least; noise of its displacement about
 # a line, and of the line's slope, per what white noise makes
 _FAINT, _MEMORIES, _STRAIGHT, _SLOPING = 4.0, 4, 1.5, 3.0
+# velocity per rms noise without which nothing moves, and so nothing rests; share of the samples
+# that do not count in this, of ends that are a guess
+_MOVES, _BRIEF = 10.0, 0.02
 LEAKS = 1.0
 """Memories of a smoother by which what is not known of a rest spreads beyond it."""
 
@@ -40,9 +43,9 @@ def held_still(
     """Displacement, velocity and acceleration (n,) without their noise where the motion rests.
 
     What noise moves to and fro lets a bristle go: Dahl friction of 15 N that yields in 0.5 mm loses
-    0.8 N in a rest of 0.75 s under 1 um of noise. A rest is where the velocity is that of noise for some
-    memories of the smoother and the displacement a level or a straight line, to within noise; there
-    it becomes this line, as smoothly as a memory at each end lets it.
+    0.8 N in a rest of 0.75 s under 1 um of noise. A rest is where the velocity is that of noise for
+    some memories of the smoother and the displacement a level or a straight line, to within noise;
+    there it becomes this line, as smoothly as a memory at each end lets it.
 
     Parameters
     ----------
@@ -53,6 +56,8 @@ def held_still(
     """
     x, v, a = (values.copy() for values in smoothed)
     memory = max(int(np.ceil(1.0 / (cutoff * spacing))), 2)
+    if not np.quantile(np.abs(v), 1.0 - _BRIEF) > _MOVES * velocity_noise:
+        return x, v, a
     faint = np.abs(smoothed[1]) < _FAINT * velocity_noise
     edges = np.flatnonzero(np.diff(np.r_[False, faint, False].astype(int)))
     for first, last in edges.reshape(-1, 2):
