@@ -111,7 +111,7 @@ class DeviceInModel:
         # damping that bends is the plugin's as a whole
         held = {"viscous": damping} if damping or not self._bends() else {}
         series = self.device.series_stiffness > 0 or self.device.series_damping > 0
-        # behind a leak or a clutch it is one, too
+        # behind a leak it is one, too
         series |= "flywheel_velocity" in self.device.state_names
         if not (series or _CHANNEL & self.live.keys()):
             held["inertance"] = float(model.actuator_armature[self.actuator])
