@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from inerter.diagnose import Diagnosis
 from inerter.diagnose.result import ParameterValue
+from inerter.report import text
 from inerter.report.runs import role
 from inerter.report.terminal import print_summary
 from made_reports import two_runs
@@ -50,6 +51,13 @@ def test_a_phase_near_zero_is_known_and_a_size_below_its_error_is_not() -> None:
     assert "inertance 2 ± 3 kg (not determined)" in line.replace("2.0 ± 3.0", "2 ± 3")
     assert line.count("(not determined)") == 2
     assert "force_phase_1 -0.0007 ± 0.0022 rad," in line.replace("−", "-")
+
+
+def test_an_error_of_a_phase_counts_against_a_turn() -> None:
+    """On the page and in the terminal; of all else against the size."""
+    near = ParameterValue(-0.0007, 0.0022, "rad")
+    assert text.size_told("force_phase_1", near) > 0.5
+    assert text.size_told("stop_upper", near) == 0.0007
 
 
 def test_a_run_of_which_blocks_are_held_out_is_partly_held_out() -> None:

@@ -185,7 +185,7 @@ def _finding(finding: Finding, diagnosis: Diagnosis) -> dict[str, Any]:
         "confidence": text.confidence(finding.confidence),
         "parameters": [
             *(
-                (name, text.parameter_meaning(name), text.with_error(value), _vague(value))
+                (name, text.parameter_meaning(name), text.with_error(value), _vague(name, value))
                 for name, value in others.items()
             ),
             *((name, "", words, False) for name, words in curves.items()),
@@ -235,11 +235,11 @@ def _notes(finding: Finding) -> dict[str, str]:
     return notes
 
 
-def _vague(value: ParameterValue) -> str:
+def _vague(name: str, value: ParameterValue) -> str:
     """Why a value tells little; empty where it tells."""
     if value.at_limit:
         return "at the limit of what is searched"
-    return "poorly determined" if value.stderr > 0.5 * abs(value.value) else ""
+    return "poorly determined" if value.stderr > 0.5 * text.size_told(name, value) else ""
 
 
 def _run_label(run: RunCurves) -> dict[str, Any]:
@@ -279,7 +279,7 @@ def _parameters(diagnosis: Diagnosis) -> list[dict[str, Any]]:
                 else "as set"
                 if new is not None
                 else "left out",
-                "vague": _vague(found) if found else "",
+                "vague": _vague(name, found) if found else "",
             }
         )
     return rows

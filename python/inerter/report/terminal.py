@@ -16,9 +16,6 @@ from inerter.report import text
 from inerter.report.runs import role
 from inerter.report.subject import subject
 
-# standard error of a phase [rad] up to which it is known: an eighth of a turn
-_KNOWN_PHASE = 0.8
-
 
 def print_summary(diagnosis: Diagnosis, console: Console) -> None:
     """Print `summary` on a console."""
@@ -104,12 +101,8 @@ def _own_values(diagnosis: Diagnosis) -> Text | None:
 
 
 def _unknown(name: str, value: ParameterValue) -> str:
-    """That a value is smaller than its error, in brackets; empty where it is not.
-
-    A phase has no size: it is unknown where its error is a large part of a turn.
-    """
-    size = _KNOWN_PHASE if "phase" in name else abs(value.value)
-    return " (not determined)" if value.stderr > size else ""
+    """That a value is smaller than its error, in brackets; empty where it is not."""
+    return " (not determined)" if value.stderr > text.size_told(name, value) else ""
 
 
 def _departure(value: ParameterValue) -> str:

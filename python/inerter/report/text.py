@@ -18,6 +18,8 @@ from inerter.motion_units import parameter_unit as unit_in
 
 _SUPERSCRIPT = str.maketrans("-0123456789n", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹ⁿ")
 UNKNOWN = "–"
+# an eighth of a turn [rad]: a phase is known where its error is less
+_KNOWN_PHASE = 0.8
 _POWER_OF_TEN = re.compile(r"(?<![\w.])(\d(?:\.\d+)?)e([+-]?\d+)(?!\w)")
 
 # of a friction level that may go with the speed
@@ -74,6 +76,11 @@ def unit(name: str) -> str:
         power = part[: len(part) - len(part.lstrip("-0123456789n"))]
         text += power.translate(_SUPERSCRIPT) + part[len(power) :]
     return text
+
+
+def size_told(name: str, value: ParameterValue) -> float:
+    """What the error of a value counts against: its size, of a phase, which has none, of a turn."""
+    return _KNOWN_PHASE if "phase" in name else abs(value.value)
 
 
 def with_error(value: ParameterValue) -> str:
