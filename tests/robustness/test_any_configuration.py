@@ -146,6 +146,16 @@ def simulated(path: Path) -> SimulatedRun | str:
 @settings(SETTINGS, max_examples=25)
 @given(values=meant(), speed=st.floats(0.05, 1.0))
 @example(values={"inertance": 50.0, "viscous": 50.0, "damping_knee": 2.2e-309}, speed=1.0)
+@example(
+    values={
+        "inertance": 50.0,
+        "leak_damping": 1000.0,
+        "leak_quadratic_damping": 2.2e-309,
+        "series_stiffness": 1e5,
+        "series_damping": 300.0,
+    },
+    speed=1.0,
+)
 def test_what_is_taken_is_simulated_right(
     values: Values, speed: float, integrator: str, tmp_path: Path
 ) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from inerter.catalogue.coordinates import FRICTION_SHARE
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.scales import Scales
 from inerter.diagnose.candidate import Candidate
@@ -116,6 +117,37 @@ def bends_more(model: Model) -> Iterator[Candidate]:
     elif "damping_beyond_back" not in values:
         slopes = model.adding(None, damping_beyond_back=beyond)
         yield Candidate(EFFECT, "slopes", (slopes,))
+
+
+def bends_each_way(model: Model, sizes: Scales) -> list[Model]:
+    """Of damping that bends all at once: in each direction by itself, sharply, beside friction.
+
+    What lacks one of these has others stand in for it, and none of them is of use alone then.
+    """
+    found = []
+    for bent in [model] if _LINE in model.free else straight_bends(model, sizes):
+        bare = bent.without(("quadratic_damping",))
+        beyond = max(bare.values["damping_beyond"], 0.2)
+        forms = {
+            "damping_asymmetry": 0.0, "damping_sharpness": 8.0,
+            _BACK[0]: bare.values[_LINE], _BACK[1]: beyond,
+        }  # fmt: skip
+        more = {name: value for name, value in forms.items() if name not in bare.values}
+        bare = bare.holding(damping_beyond=beyond).adding(None, **more)
+        found += _beside_friction(bare, sizes)
+    return [each for each in found if each.shape != model.shape]
+
+
+def _beside_friction(model: Model, sizes: Scales) -> list[Model]:
+    """With dry friction; what differs between the directions may be a constant force, too."""
+    if model.friction == "none":
+        level, width = FRICTION_SHARE * sizes.force, model.values["transition_velocity"]
+        return [model.adding("coulomb", coulomb_force=level, transition_velocity=width)]
+    if "friction_asymmetry" not in model.free:
+        return [model]
+    level, uneven = model.values["coulomb_force"], model.values["friction_asymmetry"]
+    offset = model.values.get("force_offset", 0.0) + uneven * level
+    return [model, model.without(("friction_asymmetry",)).adding(None, force_offset=offset)]
 
 
 def bends_less(model: Model) -> list[Model]:

@@ -22,6 +22,7 @@ from inerter.diagnose.low_passes import other_filter
 from inerter.diagnose.plainer import (
     as_constant_force,
     as_dampers_that_lag,
+    as_law_of_long_waves,
     as_one,
     as_one_friction,
     as_plain_part,
@@ -162,8 +163,12 @@ def plain_part(search: Search, current: Scored) -> Scored | None:
     masks, frequency = search.problem.masks, search.problem.scales.frequency
     none = swings_on(current.model, search.longest, frequency)
     good = []
-    plain = as_plain_part(current.model, search.longest, frequency)
-    for model in filter(search.may_be, [*plain, *as_constant_force(current.model)]):
+    plain = [
+        *as_plain_part(current.model, search.longest, frequency),
+        *as_law_of_long_waves(current.model, search.problem.scales.travel),
+        *as_constant_force(current.model),
+    ]
+    for model in filter(search.may_be, plain):
         fit = search.problem.fit(model)
         if none or fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
             scored = search.score("exchange", None, fit)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from inerter.catalogue.along_stroke import QUANTITIES, TURN
+from inerter.catalogue.along_stroke import PERIODS, QUANTITIES, TURN
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import LAW_COORDINATES, LEVEL_COORDINATES
 from inerter.diagnose.bent_damping import SPRING, is_bent, knee_of, may_lag
@@ -27,8 +27,12 @@ _NO_POWER = 0.3
 _FAR_BELOW = 0.05
 # laws of friction with a peak near rest, in the place of those without one
 _WITH_A_PEAK = {"coulomb": "stribeck", "dahl": "lugre", "lugre": "lugre"}
+# time constant per radian of the motion from which on a branch may be a spring
+_SLOW = 10.0
 # time constants of a leak that the longest run lasts at least: e^-3 of its beginning, 5 %, is left
 _CAUGHT = 3.0
+# places at which a force of the place is read off
+_PLACES = 41
 # between slow (1) and quick (1.4)
 _EXPONENT = 1.3
 
@@ -96,8 +100,8 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
     """A damper, friction, or a spring with any zero for what may be no more, plainest first.
 
     That is a leak before a flywheel that hardly turns at this frequency [Hz], damping that bends
-    with the speed either way, a branch that hardly relaxes in the longest run [s], or so soon that
-    it follows a motion of this frequency, one that is the spring before the dampers, a curve of the
+    with the speed either way, a branch that hardly relaxes in a period or in the longest run [s],
+    or so soon that it follows the motion, one that is the spring before the dampers, a curve of the
     force, and a shaft on which little turns or so softly that it does not follow the motion.
     """
     found = []
@@ -116,7 +120,7 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
         if may_lag(bare):
             damping = bare.values["viscous"] + size * lasts
             found.append(bare.adding(None, viscous=damping, **{SPRING: size}))
-        if lasts > 0.5 * longest:
+        if lasts > min(0.5 * longest, _SLOW / (2 * np.pi * frequency)):
             found.append(_with_spring(bare, size, 0.0))
         elif 2 * np.pi * frequency * lasts < 1.0:
             damping = model.values.get("viscous", 0.0) + size * lasts
@@ -248,10 +252,37 @@ def _as_law_of_the_place(model: Model) -> list[Model]:
         return []
     places = np.linspace(model.values["curve_lower"], model.values["curve_upper"], len(nodes))
     forces = np.array([model.values[name] for name in nodes])
-    bare = model.without(nodes)
+    return _laws_of_a_place(model.without(nodes), places, forces)
+
+
+def as_law_of_long_waves(model: Model, travel: tuple[float, float]) -> list[Model]:
+    """The same for periods of force that the travel [m] does not hold once, and what bends beside.
+
+    A fit may lengthen a period, which is a curve then as any other.
+    """
+    low, high = travel
+    periods = [_FORCE.period(i) for i in range(1, PERIODS + 1)]
+    long = [
+        name
+        for names in periods
+        if names[0] in model.free and model.values[names[0]] > high - low
+        for name in names
+    ]
+    if not long or not np.isfinite(travel).all():
+        return []
+    bends = (*long, "stiffness_cubic", "rest_length")
+    springs = [name for name in (*bends, "stiffness") if name in model.values]
+    places = np.linspace(low, high, _PLACES)
+    still = np.zeros_like(places)
+    alone = Model("none", {name: model.values[name] for name in springs}, ())
+    forces = alone.device().along(1.0, places, still, still)["total"]
+    return _laws_of_a_place(model.without([n for n in springs if n in model.free]), places, forces)
+
+
+def _laws_of_a_place(bare: Model, places: Array, forces: Array) -> list[Model]:
     spring = _with_spring(bare, *np.polyfit(places, forces, 1))
     found = [spring, spring.adding(None, stiffness_cubic=0.0)]
-    if not {"gas_push", "gas_pressure"} & model.values.keys():
+    if not {"gas_push", "gas_pressure"} & bare.values.keys():
         found += _as_gas(bare, places, forces)
     return found
 

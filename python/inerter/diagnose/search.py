@@ -26,17 +26,18 @@ from inerter.diagnose.composition import (
     is_distinct,
     is_local,
     is_shaft,
-    without_effect,
 )
-from inerter.diagnose.decision import CRITERIA, as_good, better, loss, not_needed, plainest
+from inerter.diagnose.decision import CRITERIA, as_good, better, loss, plainest
 from inerter.diagnose.exchange import exchanged, other_side, plain_part
 from inerter.diagnose.instead import instead
 from inerter.diagnose.left_out import Folds, left_out_errors
 from inerter.diagnose.low_passes import noise_taken, where_late
 from inerter.diagnose.plainer import keeps_its_start
 from inerter.diagnose.play import is_felt
+from inerter.diagnose.prune import pruned
 from inerter.diagnose.statistics import Array, block_squares
 from inerter.diagnose.time_limit import OverTimeError, TimeLimit
+from inerter.diagnose.together import whole_damper
 from inerter.diagnose.tone import Witness, is_harmonic, tone_candidate
 from inerter.diagnose.trials import Trials, plain_beside, shortlist_of
 from inerter.identify.fit import Fit, Problem
@@ -180,10 +181,24 @@ class Search:
         return current
 
     def _stepped(self, current: Scored, until: str | None, most: int) -> Scored:
-        """Effects added one after another, and pruned."""
+        """Effects added one after another, and pruned, until neither finds anything to do."""
+        seen = []
+        while True:
+            current = self._added(current, until, most)
+            if current.effect == until:
+                return current
+            shape, current = current.model.shape, pruned(self, current)
+            # what has gone may have stood in the way of what was not there yet
+            if current.model.shape in (shape, *seen) or self.time.is_over():
+                return current
+            seen.append(current.model.shape)
+
+    def _added(self, current: Scored, until: str | None, most: int) -> Scored:
+        """Effects added one after another."""
         with suppress(OverTimeError):
             while len(self.found) < most and not self.time.is_over():
                 chosen = self._best_step(current) or self._two_steps(current)
+                chosen = chosen or whole_damper(self, current)
                 if chosen is None:
                     break
                 self.found.append(chosen.effect)
@@ -193,7 +208,7 @@ class Search:
                 if before.shape == current.model.shape:
                     # the exchange takes back what the step has brought, and would again
                     break
-        return self._prune(current)
+        return current
 
     def next_effect(self, model: Model) -> str | None:
         """The effect that would be added to a model in one more step, fitted to all fit data."""
@@ -418,33 +433,3 @@ class Search:
         least = CRITERIA.local_gain if loss(simple, best) < CRITERIA.too_much else 0.0
         lost = advantage_of(simple.residual, best.residual, masks, self.blocks, best.effect, least)
         return as_good(simple, best, lost)
-
-    def _prune(self, current: Scored) -> Scored:
-        """Take away what the others have made unnecessary, the least important first."""
-        masks, more, needed = self.problem.masks, True, set[str]()
-        while more:
-            self.progress("checking that every effect is still needed")
-            models = [
-                (effect, model)
-                for effect, _ in effects_of(current.model, self.baseline)
-                for model in without_effect(current.model, effect, self.baseline)
-                if effect not in needed and self.may_be(model)
-            ]
-            simpler, limit = [], (1 + CRITERIA.too_much) * current.fit.rmse(masks)
-            # what cannot come so near is needed, however far its refit would get
-            fits = self.trials.refits([model for _, model in models], limit)
-            near = [
-                (effect, None, fit)
-                for (effect, _), fit in zip(models, fits, strict=True)
-                if fit.rmse(masks) <= limit
-            ]
-            # nor does it become less so when something else is taken away
-            needed |= {effect for effect, _ in models} - {effect for effect, *_ in near}
-            for scored in self.scores(near):
-                lost = self.advantage(scored, current, scored.effect)
-                if not_needed(scored, current, lost):
-                    simpler.append(scored)
-            if simpler:
-                current = min(simpler, key=lambda scored: scored.squares.sum())
-            more = bool(simpler) and not self.time.is_over()
-        return current

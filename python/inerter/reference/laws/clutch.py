@@ -46,10 +46,9 @@ def rate(parameters: DeviceParameters, spring: Quantity, series_rate: Quantity) 
     # what is beyond the limits, shared by the dampers: (c_s + c_l) u + q u |u|
     beyond = np.maximum(held - upper, 0.0) + np.minimum(held - lower, 0.0)
     linear, quadratic = damping + parameters.leak_damping, parameters.leak_quadratic_damping
-    if quadratic == 0.0:
-        return beyond / linear
-    size = np.sqrt(0.25 * linear**2 / quadratic**2 + np.abs(beyond) / quadratic)
-    share = quadratic * (size + 0.5 * linear / quadratic)
+    # the root of q u^2 + c u = |beyond|, without the difference of two large numbers
+    root = np.hypot(linear, 2.0 * np.sqrt(quadratic * np.abs(beyond)))
+    share = 0.5 * linear + 0.5 * root
     return beyond / np.where(share > 0.0, share, 1.0)
 
 
