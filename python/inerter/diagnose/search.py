@@ -37,7 +37,7 @@ from inerter.diagnose.play import is_felt
 from inerter.diagnose.prune import pruned
 from inerter.diagnose.statistics import Array, block_squares
 from inerter.diagnose.time_limit import OverTimeError, TimeLimit
-from inerter.diagnose.together import whole_damper
+from inerter.diagnose.together import whole_damper, whole_mount
 from inerter.diagnose.tone import Witness, is_harmonic, tone_candidate
 from inerter.diagnose.trials import Trials, plain_beside, shortlist_of
 from inerter.identify.fit import Fit, Problem
@@ -204,6 +204,7 @@ class Search:
                 self.found.append(chosen.effect)
                 if chosen.effect == until:
                     return chosen
+                chosen = whole_mount(self, chosen) or chosen
                 before, current = current.model, exchanged(self, chosen)
                 if before.shape == current.model.shape:
                     # the exchange takes back what the step has brought, and would again

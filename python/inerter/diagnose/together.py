@@ -1,37 +1,79 @@
 """Effects that are of use together, where none of them is alone.
 
-A damper has valves that open at another speed in each direction, rounded off, and dry friction: each
-of these is blurred by what stands in for the others, and the search finds no step that gains.
+A damper has valves that open at another speed in each direction, rounded off, and dry friction; a
+rubber mount has a spring and relaxes over decades of time. Each of these is blurred by what stands
+in for the others, and the search, which adds one after another, goes astray or finds no step that
+gains.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inerter.diagnose.bent_damping import EFFECT, bends_each_way, is_bent
+from inerter.catalogue.effects import EFFECTS
+from inerter.catalogue.scales import Scales
+from inerter.diagnose import bent_damping
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.trials import FAR
+from inerter.identify.model import Model
+from inerter.identify.transient import RELAXING
 
 if TYPE_CHECKING:
     from inerter.diagnose.search import Scored, Search
 
+_RELAXES = EFFECTS["viscoelasticity"].name
+_BRANCHES = range(1, len(RELAXING) + 1)
+# time constants of a mount's branches per period of the motion, and their share of the stiffness
+_TIMES, _SHARE = (0.03, 0.2, 1.5), 0.15
+
 
 def whole_damper(search: Search, current: Scored) -> Scored | None:
-    """A damper with all that one has, where that predicts much better; what is needless is pruned."""
+    """A damper with all that one has where that predicts much better; the needless is pruned."""
+    if not bent_damping.is_bent(current.model):
+        return None
+    starts = bent_damping.bends_each_way(current.model, search.problem.scales)
+    return _much_better(search, current, bent_damping.EFFECT, starts)
+
+
+def whole_mount(search: Search, current: Scored) -> Scored | None:
+    """A spring and all branches for some that relax, where that predicts much better."""
+    starts = mounts(current.model, search.problem.scales)
+    return _much_better(search, current, _RELAXES, starts)
+
+
+def mounts(model: Model, sizes: Scales) -> list[Model]:
+    """A spring and all branches that a device may have in the place of two or more of them."""
+    names = [(f"branch_stiffness_{i}", f"branch_time_{i}") for i in _BRANCHES]
+    there = [each for each in names if each[0] in model.free]
+    if len(there) < 2 or (len(there) == len(names) and "stiffness" in model.free):
+        return []
+    slowest = max(there, key=lambda each: model.values[each[1]])
+    stiffness = model.values[slowest[0]]
+    begin = {"stiffness": model.values.get("stiffness", 0.0) + (1 - _SHARE) * stiffness}
+    for (branch, time), ratio in zip(names, _TIMES, strict=True):
+        begin |= {branch: _SHARE * stiffness, time: ratio / sizes.frequency}
+    begin["force_offset"] = model.values.get("force_offset", 0.0)
+    return [model.without([name for each in there for name in each]).adding(None, **begin)]
+
+
+def _much_better(
+    search: Search, current: Scored, effect: str, starts: Sequence[Model]
+) -> Scored | None:
+    """The best fit from some starts, where the error is more than noise and falls by much."""
     masks, error = search.problem.masks, current.fit.rmse(search.problem.masks)
     noise = float(np.sqrt(np.mean([run.noise**2 for run in search.runs])))
-    if not is_bent(current.model) or error < CRITERIA.near_noise * noise:
+    if error < CRITERIA.near_noise * noise:
         return None
-    starts = bends_each_way(current.model, search.problem.scales)
     starts = tuple(filter(search.may_be, starts))
     if not starts:
         return None
     limit = (1 - CRITERIA.large_gain) * error
-    fit = search.trials.fit(Candidate(EFFECT, None, starts), (FAR * limit, np.inf), limit)
+    fit = search.trials.fit(Candidate(effect, None, starts), (FAR * limit, np.inf), limit)
     if fit.rmse(masks) >= limit:
         return None
-    scored = search.score(EFFECT, None, fit)
+    scored = search.score(effect, None, fit)
     return scored if search.better(current, scored) else None
