@@ -38,6 +38,7 @@ from inerter.records.preparation import Preparation
 
 # share of a period that a low-pass along one sine begins with, and what it may smooth
 _LATE, _JUMPS = 0.03, "coulomb_friction"
+_PLAY = frozenset({"backlash"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,7 +93,10 @@ def searched(start: Prepared) -> Searched:
     found = Searched(prepared=start, band=band, data=data, search=search, final=final)
     # what a play does lies above the motion's band too, and is asked for first
     if play := _play(found):
-        return _with_play(found, play)
+        followed = _with_play(found, play)
+        if _PLAY.issubset(followed.final.model.free):
+            return followed
+        found = _without_play(found, followed.final.model)
     return _in_narrower_band(found)
 
 
@@ -264,6 +268,24 @@ def _with_play(found: Searched, play: Model) -> Searched:
         never=found.search.never,
     )  # fmt: skip
     return replace(found, data=data, search=search, final=search.run(play))
+
+
+def _without_play(found: Searched, model: Model) -> Searched:
+    """The search from what has done the work of a play on, along all of the runs again."""
+    start, data, band, search = found.prepared, found.data, found.band, found.search
+    search.excluded |= _PLAY
+    final = search.run(model)
+    for _ in range(CRITERIA.more_bands):
+        wider = _wider(data, band, final.model)
+        if wider is None:
+            break
+        band, search = wider, search_in(start, wider)
+        search.excluded |= _PLAY
+        final = search.run(final.model)
+    search.excluded -= _PLAY
+    if raw := _wider(data, data.preparation, final.model):
+        data = data.in_band(raw)
+    return replace(found, band=band, data=data, search=search, final=final)
 
 
 def _in_narrower_band(found: Searched) -> Searched:
