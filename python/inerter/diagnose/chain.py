@@ -42,6 +42,8 @@ class Link:
         Whether the latter is the case.
     stands : bool
         Whether the effect helps there, surely and visibly.
+    takes : float, optional
+        What it takes away of the error but for blows of a play [N].
     """
 
     effect: str
@@ -53,6 +55,7 @@ class Link:
     interval: Interval | None
     seen_in_blocks: bool
     stands: bool
+    takes: float | None = None
 
     @property
     def helps(self) -> bool:
@@ -162,6 +165,7 @@ def _link(
         and not (effect == "sensor_delay" and not judge.delay_visible(after.model))
     )
     interval = gain_interval(*squares)
+    has_blows = "backlash" in after.model.free
     return Link(
         effect=effect,
         law=law,
@@ -172,6 +176,7 @@ def _link(
         interval=interval,
         seen_in_blocks=silent,
         stands=stands,
+        takes=judge.taken_in_calm(before.model, after.model) if has_blows and not silent else None,
     )
 
 

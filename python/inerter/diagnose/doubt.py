@@ -12,10 +12,10 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.result import Finding
+from inerter.diagnose.statistics import taken_away
+from inerter.motion_units import words
 
 _LOOP = "hysteretic_friction"
 # what the force of one period does not hold
@@ -33,8 +33,20 @@ def trust(finding: Finding, structure: float) -> float:
 
 
 def explained(finding: Finding) -> float:
-    """Rms of what an effect takes away from the held-out error, in its unit."""
-    return float(np.sqrt(max(finding.rmse_before**2 - finding.rmse_after**2, 0.0)))
+    """Rms of what an effect takes away from the held-out error, as it counts, in its unit."""
+    if finding.takes is not None:
+        return finding.takes
+    return taken_away(finding.rmse_before, finding.rmse_after)
+
+
+def without_blows(finding: Finding) -> Finding:
+    """A finding beside a play with what it takes away but for the blows, which hide that."""
+    if finding.takes is None or finding.effect == "backlash":
+        return finding
+    newton = words(finding.motion, "N")
+    return finding.remarked(
+        f"But for the blows of the play it takes {finding.takes:.3g} {newton} away."
+    )
 
 
 def by_weight(findings: Sequence[Finding]) -> list[Finding]:

@@ -27,8 +27,6 @@ _NO_POWER = 0.3
 _FAR_BELOW = 0.05
 # laws of friction with a peak near rest, in the place of those without one
 _WITH_A_PEAK = {"coulomb": "stribeck", "dahl": "lugre", "lugre": "lugre"}
-# time constant per radian of the motion from which on a branch may be a spring
-_SLOW = 10.0
 # time constants of a leak that the longest run lasts at least: e^-3 of its beginning, 5 %, is left
 _CAUGHT = 3.0
 # places at which a force of the place is read off
@@ -100,8 +98,8 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
     """A damper, friction, or a spring with any zero for what may be no more, plainest first.
 
     That is a leak before a flywheel that hardly turns at this frequency [Hz], damping that bends
-    with the speed either way, a branch that hardly relaxes in a period or in the longest run [s],
-    or so soon that it follows the motion, one that is the spring before the dampers, a curve of the
+    with the speed either way, a branch that hardly relaxes in the longest run [s], or so soon that
+    it follows a motion of this frequency, one that is the spring before the dampers, a curve of the
     force, and a shaft on which little turns or so softly that it does not follow the motion.
     """
     found = []
@@ -120,7 +118,7 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
         if may_lag(bare):
             damping = bare.values["viscous"] + size * lasts
             found.append(bare.adding(None, viscous=damping, **{SPRING: size}))
-        if lasts > min(0.5 * longest, _SLOW / (2 * np.pi * frequency)):
+        if lasts > 0.5 * longest:
             found.append(_with_spring(bare, size, 0.0))
         elif 2 * np.pi * frequency * lasts < 1.0:
             damping = model.values.get("viscous", 0.0) + size * lasts

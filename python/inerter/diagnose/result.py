@@ -77,6 +77,7 @@ class Finding:
     side: of friction, where it acts: "terminals", "flywheel" (behind an elasticity) or "both"; else
     empty;
     compared: False where a time limit left no time to ask what else could explain the data;
+    takes: what it takes away of the error but for blows of a play [N]; None where all count;
     remark: what the model says of it beside its figures, in sentences, at the end of the evidence;
     motion: what the device does, in rotation read N m for N.
     """
@@ -94,6 +95,7 @@ class Finding:
     members: tuple[str, ...] = ()
     looks_like: bool = False
     compared: bool = True
+    takes: float | None = None
     remark: str = ""
     side: str = ""
     motion: Kind = TRANSLATION

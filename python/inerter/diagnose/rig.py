@@ -20,7 +20,13 @@ from inerter.diagnose.composition import distinction
 from inerter.diagnose.creeping import without_creeping
 from inerter.diagnose.data import everywhere
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.doubt import as_sure_as_its_value, doubted, of_one_sine, with_own_value
+from inerter.diagnose.doubt import (
+    as_sure_as_its_value,
+    doubted,
+    of_one_sine,
+    with_own_value,
+    without_blows,
+)
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.everything import errors_of, on_everything
 from inerter.diagnose.excerpts import Excerpts, excerpts
@@ -249,6 +255,10 @@ def diagnosis_of(
         of_part, judge.motion_noise(final), further_channels(part.records, part.runs),
     )  # fmt: skip
     remains = with_ceiling(part, of_part, floor, remains, judge.motion_noise(final), extended.rmse)
+    if "backlash" in final.free:
+        # where the model is right, too, it meets some blows of a play at another moment
+        calm = judge.left_in_calm(final, floor)
+        remains = replace(remains, structure=min(remains.structure, calm))
     remains = replace(remains, summary=given.time.tried(remains.summary))
     kept = None
     if given.carry != "nothing":
@@ -286,7 +296,7 @@ def diagnosis_of(
             finding, same.get(finding.effect), searched.search, stands.fit, searched.covered
         )
         told = with_own_value(told, finding.confidence, errors > CRITERIA.own_value)
-        told = with_side(as_shape_of_stop(told, final), final)
+        told = without_blows(with_side(as_shape_of_stop(told, final), final))
         return doubted(as_sure_as_its_value(told, errors), remains.structure)
 
     findings = [weighed(finding) for finding in _findings(stands, values)]
@@ -363,6 +373,7 @@ def _findings(stands: Confirmed, values: dict[str, ParameterValue]) -> list[Find
             seen_in_blocks=link.seen_in_blocks,
             gain_interval=link.interval,
             compared=known is None or known.compared,
+            takes=link.takes,
             motion=stands.data.whole[0].motion,
         )
         findings.append(replace(finding, evidence=wording.evidence(finding)))

@@ -38,6 +38,11 @@ def where_apart(
     return blocks([m & (np.abs(d) > limit) for d, m in zip(apart, masks, strict=True)])
 
 
+def taken_away(before: float, after: float) -> float:
+    """What makes an rms error fall from one value to another, rms; 0 where it does not fall."""
+    return float(np.sqrt(max(before**2 - after**2, 0.0)))
+
+
 def advantage(simple: Array, rich: Array) -> float:
     """How surely the second of two models has smaller errors: a t value over paired blocks.
 

@@ -13,6 +13,7 @@ from inerter.diagnose.budget.ceiling import Ceiling, ceiling
 from inerter.diagnose.data import Data
 from inerter.diagnose.remainder.words import no_noise
 from inerter.diagnose.result import Unexplained
+from inerter.diagnose.statistics import taken_away
 from inerter.identify.fit import rms
 from inerter.motion_units import Kind, words
 
@@ -57,7 +58,7 @@ def with_ceiling(
     if rmse is not None and own > 0:
         best = replace(best, rmse=best.rmse * rmse / own, takes=best.takes * rmse / own)
         own = rmse
-    by_tests = float(np.sqrt(max(own**2 - found.predicted**2, 0.0)))
+    by_tests = taken_away(own, found.predicted)
     told = replace(found, ceiling={"rmse": min(best.rmse, by_tests)})
     if best.rmse < (1 - _SAME) * by_tests:
         # what else is predicted leaves less than the tests alone do

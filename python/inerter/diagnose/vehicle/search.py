@@ -108,6 +108,16 @@ class VehicleSearch:
     def run(self) -> VehicleScored:
         """From the user's model to the one that predicts best."""
         current = self._score(fit_all(self.problem, [(VehicleModel(), {})])[0])
+        while True:
+            current = self._added(current)
+            pruned = self._prune(current)
+            if len(pruned.model.effects) == len(current.model.effects):
+                return pruned
+            # what has gone may have stood in the way of what was not there yet
+            current = pruned
+
+    def _added(self, current: VehicleScored) -> VehicleScored:
+        """Effects added one after another, so many at most in all rounds."""
         while len(self.steps) < CRITERIA.most_in_vehicles:
             if self._is_noise(current):
                 break
@@ -116,7 +126,7 @@ class VehicleSearch:
                 break
             self.steps.append(step)
             current = step.chosen
-        return self._prune(current)
+        return current
 
     def _is_noise(self, current: VehicleScored) -> bool:
         """Whether nothing is left but white noise and what the model's step does."""
