@@ -39,7 +39,7 @@ def explained(finding: Finding) -> float:
     return taken_away(finding.rmse_before, finding.rmse_after)
 
 
-def without_blows(finding: Finding) -> Finding:
+def _without_blows(finding: Finding) -> Finding:
     """A finding beside a play with what it takes away but for the blows, which hide that."""
     if finding.takes is None or finding.effect == "backlash":
         return finding
@@ -72,6 +72,7 @@ def reason(finding: Finding, structure: float) -> str:
 
 def doubted(finding: Finding, structure: float) -> Finding:
     """A finding with what remains unexplained considered."""
+    finding = _without_blows(finding)
     confidence = trust(finding, structure) * finding.confidence
     evidence = f"{finding.evidence} {reason(finding, structure)}".strip()
     describes = looks_like(finding, structure)

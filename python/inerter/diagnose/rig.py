@@ -20,13 +20,7 @@ from inerter.diagnose.composition import distinction
 from inerter.diagnose.creeping import without_creeping
 from inerter.diagnose.data import everywhere
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.doubt import (
-    as_sure_as_its_value,
-    doubted,
-    of_one_sine,
-    with_own_value,
-    without_blows,
-)
+from inerter.diagnose.doubt import as_sure_as_its_value, doubted, of_one_sine, with_own_value
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.everything import errors_of, on_everything
 from inerter.diagnose.excerpts import Excerpts, excerpts
@@ -296,7 +290,7 @@ def diagnosis_of(
             finding, same.get(finding.effect), searched.search, stands.fit, searched.covered
         )
         told = with_own_value(told, finding.confidence, errors > CRITERIA.own_value)
-        told = without_blows(with_side(as_shape_of_stop(told, final), final))
+        told = with_side(as_shape_of_stop(told, final), final)
         return doubted(as_sure_as_its_value(told, errors), remains.structure)
 
     findings = [weighed(finding) for finding in _findings(stands, values)]
