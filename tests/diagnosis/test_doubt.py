@@ -44,6 +44,17 @@ def test_trust_is_even_beside_an_equal_rest_and_whole_without_a_rest() -> None:
     assert trust(THREE, 0.1) > 0.99
 
 
+def test_beside_a_play_blows_do_not_count() -> None:
+    """Blows hide what a friction takes away, as they hide what it leaves."""
+    hidden = replace(THREE, rmse_before=37.3, rmse_after=37.9, takes=4.0)
+    assert trust(hidden, 1.0) == pytest.approx(16 / 17)
+    told = doubted(hidden, 1.0)
+    assert "But for the blows of the play it takes 4 N away." in told.evidence
+    # of the play itself they are what it makes
+    play = doubted(replace(hidden, effect="backlash"), 1.0)
+    assert "But for" not in play.evidence
+
+
 def test_a_value_that_may_be_none_is_as_likely_not_there() -> None:
     doubtful = with_own_value(THREE, 0.98, is_distinct=False)
     assert doubtful.confidence == pytest.approx(0.49)

@@ -56,3 +56,18 @@ def test_a_shaft_that_is_none_is_not_confirmed(seed: int) -> None:
 def test_the_wrong_resonance_is_none() -> None:
     found = judge(noise(1), noise(1) + resonance())
     assert found.advantage(SIMPLE, RICH, "series_elasticity") < -2.0
+
+
+def test_calm_is_all_but_blows() -> None:
+    blows = np.zeros(COUNT)
+    blows[700:720] = 90.0
+    masks = [np.ones(COUNT, bool)]
+    left = {SIMPLE.free: [2.0 + noise(1) + blows], RICH.free: [noise(1) - blows]}
+    raw = SimpleNamespace(masks=masks, errors=lambda model: left[model.free])
+    found = judge(noise(1), noise(1))
+    found = Judge(found.band, cast(Any, raw), found.weighed, found.preparation, found.baseline)
+    (calm,) = found.calm(RICH)
+    assert not calm[700:720].any()
+    assert calm.sum() == COUNT - 20
+    assert found.taken_in_calm(SIMPLE, RICH) == pytest.approx(2.0, rel=0.02)
+    assert found.left_in_calm(RICH, 0.6) == pytest.approx(0.8, rel=0.05)

@@ -13,6 +13,7 @@ from inerter.diagnose.composition import effects_of
 from inerter.diagnose.exchange import plain_part
 from inerter.diagnose.plainer import (
     as_constant_force,
+    as_law_of_long_waves,
     as_one,
     as_one_friction,
     as_plain_part,
@@ -68,6 +69,24 @@ def test_a_branch_without_a_time_of_its_own_and_a_straight_curve_are_plain_parts
     assert plain.values["force_offset"] == pytest.approx(13.0)
     assert set(hard.free) - set(plain.free) == {"stiffness_cubic"}
     assert plain.values.keys().isdisjoint(nodes)
+
+
+def test_a_period_longer_than_the_travel_is_a_curve_that_a_gas_may_be() -> None:
+    sizes = Scales(
+        force=100.0, displacement=0.03, velocity=0.3, acceleration=3.0, travel=(-0.05, 0.05)
+    )
+    wave = {"force_period_1": 0.287, "force_cosine_1": 0.0, "force_sine_1": 68.0}
+    model = BASELINE.adding(None, **wave, stiffness_cubic=6.8e4, rest_length=0.12)
+    spring, hard, gas = as_law_of_long_waves(model, sizes)
+    assert set(hard.free) - set(spring.free) == {"stiffness_cubic"}
+    assert "gas_push" in gas.free
+    assert all(each.values.keys().isdisjoint(wave) for each in (spring, hard, gas))
+    # the gas is the nearest of some to the same force over the travel
+    x = np.linspace(-0.05, 0.05, 41)
+    one, two = (each.device().along(1e-3, x, 0 * x, 0 * x)["total"] for each in (model, gas))
+    assert np.std(one - two) < 0.05 * np.std(one)
+    short = BASELINE.adding(None, **{**wave, "force_period_1": 0.03})
+    assert as_law_of_long_waves(short, sizes) == []
 
 
 @pytest.mark.parametrize(

@@ -165,7 +165,7 @@ def plain_part(search: Search, current: Scored) -> Scored | None:
     good = []
     plain = [
         *as_plain_part(current.model, search.longest, frequency),
-        *as_law_of_long_waves(current.model, search.problem.scales.travel),
+        *as_law_of_long_waves(current.model, search.problem.scales),
         *as_constant_force(current.model),
     ]
     for model in filter(search.may_be, plain):

@@ -11,6 +11,7 @@ import numpy as np
 from inerter.catalogue.along_stroke import PERIODS, QUANTITIES, TURN
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import LAW_COORDINATES, LEVEL_COORDINATES
+from inerter.catalogue.scales import Scales
 from inerter.diagnose.bent_damping import SPRING, is_bent, knee_of, may_lag
 from inerter.diagnose.composition import PLAYS, is_shaft, level_and_distance
 from inerter.diagnose.statistics import Array
@@ -253,28 +254,22 @@ def _as_law_of_the_place(model: Model) -> list[Model]:
     return _laws_of_a_place(model.without(nodes), places, forces)
 
 
-def as_law_of_long_waves(model: Model, travel: tuple[float, float]) -> list[Model]:
-    """The same for periods of force that the travel [m] does not hold once, and what bends beside.
+def as_law_of_long_waves(model: Model, sizes: Scales) -> list[Model]:
+    """The same for periods of force that the travel does not hold once, and what bends beside.
 
     A fit may lengthen a period, which is a curve then as any other.
     """
-    low, high = travel
     periods = [_FORCE.period(i) for i in range(1, PERIODS + 1)]
-    long = [
-        name
-        for names in periods
-        if names[0] in model.free and model.values[names[0]] > high - low
-        for name in names
-    ]
-    if not long or not np.isfinite(travel).all():
+    fitted = [names for names in periods if names[0] in model.free]
+    long = [names for names in fitted if model.values[names[0]] > np.ptp(sizes.travel)]
+    if not long:
         return []
-    bends = (*long, "stiffness_cubic", "rest_length")
-    springs = [name for name in (*bends, "stiffness") if name in model.values]
-    places = np.linspace(low, high, _PLACES)
+    names = (*sum(long, ()), "stiffness_cubic", "rest_length", "stiffness")
+    alone = {name: model.values[name] for name in names if name in model.values}
+    places = np.linspace(*sizes.travel, _PLACES)
     still = np.zeros_like(places)
-    alone = Model("none", {name: model.values[name] for name in springs}, ())
-    forces = alone.device().along(1.0, places, still, still)["total"]
-    return _laws_of_a_place(model.without([n for n in springs if n in model.free]), places, forces)
+    forces = Model("none", alone, ()).device().along(1.0, places, still, still)["total"]
+    return _laws_of_a_place(model.without([n for n in alone if n in model.free]), places, forces)
 
 
 def _laws_of_a_place(bare: Model, places: Array, forces: Array) -> list[Model]:

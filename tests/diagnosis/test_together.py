@@ -1,0 +1,90 @@
+"""Effects of one machine that are tried together."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from inerter.catalogue.scales import Scales
+from inerter.diagnose import diagnose_bench
+from inerter.diagnose.bent_damping import bends_each_way
+from inerter.diagnose.together import mounts
+from inerter.identify.model import Model
+from inerter.records import Record
+from scipy.signal import lfilter
+
+SIZES = Scales(force=300.0, displacement=0.02, velocity=0.2, acceleration=3.0)
+BASELINE = Model("none", {"inertance": 5.0, "transition_velocity": 1e-3}, ("inertance",))
+BENT = {"viscous": 3000.0, "damping_knee": 0.1, "damping_beyond": 0.0}
+
+
+def test_a_damper_that_bends_gets_all_that_one_has() -> None:
+    (whole,) = bends_each_way(BASELINE.adding(None, **BENT, quadratic_damping=90.0), SIZES)
+    assert set(whole.free) - {"inertance", *BENT} == {
+        "damping_asymmetry", "damping_sharpness", "damping_knee_back", "damping_beyond_back",
+        "coulomb_force", "transition_velocity",
+    }  # fmt: skip
+    assert whole.friction == "coulomb"
+    assert whole.values["damping_knee_back"] == 0.1
+    # a slope of nothing beyond the knee would stay where it is
+    assert whole.values["damping_beyond"] > 0.0
+    assert bends_each_way(whole, SIZES) == []
+
+
+def test_uneven_friction_of_a_damper_may_be_a_constant_force() -> None:
+    uneven = BASELINE.adding("coulomb", coulomb_force=20.0, friction_asymmetry=-0.9, **BENT)
+    kept, offset = bends_each_way(uneven, SIZES)
+    assert kept.values["friction_asymmetry"] == -0.9
+    assert "friction_asymmetry" not in offset.values
+    assert offset.values["force_offset"] == pytest.approx(-18.0)
+
+
+def test_a_power_of_the_speed_becomes_lines_first() -> None:
+    power = {"viscous": 9e3, "damping_power_knee": 0.01, "damping_exponent": 0.4}
+    model = BASELINE.adding(None, **power).holding(damping_beyond=0.0)
+    found = bends_each_way(model, SIZES)
+    assert found
+    assert all("damping_power_knee" not in each.values for each in found)
+    assert all("damping_knee_back" in each.free for each in found)
+
+
+def test_branches_become_a_mount() -> None:
+    one = {"branch_stiffness_1": 2e5, "branch_time_1": 3.0}
+    two = {**one, "branch_stiffness_2": 4e4, "branch_time_2": 0.05}
+    assert mounts(BASELINE.adding(None, **one), SIZES) == []
+    (mount,) = mounts(BASELINE.adding(None, **two), SIZES)
+    assert {"stiffness", "force_offset", "branch_stiffness_3", "branch_time_3"} <= set(mount.free)
+    assert 1e5 < mount.values["stiffness"] < 2e5
+    assert mounts(mount, SIZES) == []
+
+
+@pytest.mark.long
+def test_a_mount_of_rubber_is_a_spring_that_relaxes_over_decades(effects_seed: int) -> None:
+    """Seven Maxwell elements from 3 ms to 30 s beside 200 kN/m; its own simulation, exact steps."""
+    draw = np.random.default_rng(effects_seed)
+    time = np.arange(0, 10, 1 / 500)
+    frequency = np.sort(draw.uniform(0.3, 20, 30))[:, None]
+    size = draw.uniform(0.6, 1.4, frequency.shape) * frequency**-0.7
+    size *= 1.2e-3 / np.sqrt((size**2).sum() / 2)
+    angle = 2 * np.pi * frequency * time + draw.uniform(0, 2 * np.pi, frequency.shape)
+    x = (size * np.sin(angle)).sum(0)
+    a = -(size * (2 * np.pi * frequency) ** 2 * np.sin(angle)).sum(0)
+    force = 2e5 * x + 0.8 * a
+    for relaxes in np.logspace(-2.5, 1.5, 7):
+        # of a straight piece of motion the element keeps the mean of its decay
+        kept = np.exp(-0.002 / relaxes)
+        slope = relaxes / 0.002 * (1 - kept)
+        stretch = lfilter([slope], [1, -kept], np.diff(x, prepend=x[0]))
+        force += 3e4 * (0.1 / relaxes) ** 0.22 * stretch
+    record = Record(
+        name="mount", time=time, displacement=x + 5e-7 * draw.standard_normal(time.size),
+        force=force + 0.8 * draw.standard_normal(time.size),
+    )  # fmt: skip
+    found = diagnose_bench([record])
+    named = {each.effect for each in found.findings}
+    assert {"viscoelasticity", "parallel_stiffness"} <= named
+    assert found.extended.rmse < 2.0
+    # what relaxes over the record is a spring along it
+    stiffness = found.parameters["stiffness"]
+    assert 1.9e5 < stiffness.value < 2.4e5
+    slow = [v.value for n, v in found.parameters.items() if n.startswith("branch_stiffness")]
+    assert max(slow) < 1.2e5
