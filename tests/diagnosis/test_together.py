@@ -18,21 +18,24 @@ BENT = {"viscous": 3000.0, "damping_knee": 0.1, "damping_beyond": 0.0}
 
 
 def test_a_damper_that_bends_gets_all_that_one_has() -> None:
-    (whole,) = bends_each_way(BASELINE.adding(None, **BENT, quadratic_damping=90.0), SIZES)
+    found = bends_each_way(BASELINE.adding(None, **BENT, quadratic_damping=90.0), SIZES)
+    # from what there is and anew, without and with memory
+    assert [each.friction for each in found] == ["coulomb", "dahl"] * 2
+    whole = found[0]
     assert set(whole.free) - {"inertance", *BENT} == {
         "damping_asymmetry", "damping_sharpness", "damping_knee_back", "damping_beyond_back",
         "coulomb_force", "transition_velocity",
     }  # fmt: skip
-    assert whole.friction == "coulomb"
     assert whole.values["damping_knee_back"] == 0.1
     # a slope of nothing beyond the knee would stay where it is
     assert whole.values["damping_beyond"] > 0.0
-    assert bends_each_way(whole, SIZES) == []
+    assert [each.friction for each in bends_each_way(whole, SIZES)] == ["dahl"] * 2
 
 
 def test_uneven_friction_of_a_damper_may_be_a_constant_force() -> None:
     uneven = BASELINE.adding("coulomb", coulomb_force=20.0, friction_asymmetry=-0.9, **BENT)
-    kept, offset = bends_each_way(uneven, SIZES)
+    kept, offset, dahl, *_ = bends_each_way(uneven, SIZES)
+    assert (kept.friction, offset.friction, dahl.friction) == ("coulomb", "coulomb", "dahl")
     assert kept.values["friction_asymmetry"] == -0.9
     assert "friction_asymmetry" not in offset.values
     assert offset.values["force_offset"] == pytest.approx(-18.0)

@@ -20,6 +20,8 @@ SPRING = "damper_stiffness"
 """What says that the dampers are behind a spring."""
 _LINE, _POWER = "damping_knee", "damping_power_knee"
 _BACK = ("damping_knee_back", "damping_beyond_back")
+# of a typical displacement
+_PRESLIDING = 0.02
 # slope at rest over that of a straight line, knee over a typical speed, power
 _POWERS = ((20.0, 0.01, 0.35), (3.0, 0.2, 0.5), (2.0, 0.5, -0.8), (1.0, 1.5, -0.8))
 
@@ -120,34 +122,42 @@ def bends_more(model: Model) -> Iterator[Candidate]:
 
 
 def bends_each_way(model: Model, sizes: Scales) -> list[Model]:
-    """Of damping that bends all at once: in each direction by itself, sharply, beside friction.
+    """Of damping that bends all at once: in each direction by itself, rounded, beside friction.
 
-    What lacks one of these has others stand in for it, and none of them is of use alone then.
+    What lacks one of these has others stand in for it, and none of them is of use alone then: from
+    the forms that it has, and anew.
     """
     found = []
     for bent in [model] if _LINE in model.free else straight_bends(model, sizes):
-        bare = bent.without(("quadratic_damping",))
-        beyond = max(bare.values["damping_beyond"], 0.2)
-        forms = {
-            "damping_asymmetry": 0.0, "damping_sharpness": 8.0,
-            _BACK[0]: bare.values[_LINE], _BACK[1]: beyond,
-        }  # fmt: skip
-        more = {name: value for name, value in forms.items() if name not in bare.values}
-        bare = bare.holding(damping_beyond=beyond).adding(None, **more)
-        found += _beside_friction(bare, sizes)
+        kept = bent.without(("quadratic_damping",))
+        beyond = max(kept.values["damping_beyond"], 0.2)
+        forms = {"damping_asymmetry": 0.0, "damping_sharpness": 8.0}
+        forms |= {_BACK[0]: kept.values[_LINE], _BACK[1]: beyond}
+        more = {name: value for name, value in forms.items() if name not in kept.values}
+        found += _beside_friction(kept.holding(damping_beyond=beyond).adding(None, **more), sizes)
+    bare = model.without((*EFFECTS[EFFECT].coordinates, "quadratic_damping", SPRING))
+    anew = dict.fromkeys((_LINE, _BACK[0]), 0.7 * sizes.velocity)
+    anew |= dict.fromkeys(("damping_beyond", _BACK[1]), 0.3)
+    anew |= {"viscous": sizes.force / sizes.velocity, "damping_asymmetry": 0.0}
+    bare = bare.adding(None, **anew, damping_sharpness=3.0)
+    found += _beside_friction(bare, sizes)
     return [each for each in found if each.shape != model.shape]
 
 
 def _beside_friction(model: Model, sizes: Scales) -> list[Model]:
-    """With dry friction; what differs between the directions may be a constant force, too."""
+    """With dry friction, with memory too; what differs between the directions may be constant."""
+    width, level = model.values["transition_velocity"], FRICTION_SHARE * sizes.force
+    found = [model]
     if model.friction == "none":
-        level, width = FRICTION_SHARE * sizes.force, model.values["transition_velocity"]
-        return [model.adding("coulomb", coulomb_force=level, transition_velocity=width)]
-    if "friction_asymmetry" not in model.free:
-        return [model]
-    level, uneven = model.values["coulomb_force"], model.values["friction_asymmetry"]
-    offset = model.values.get("force_offset", 0.0) + uneven * level
-    return [model, model.without(("friction_asymmetry",)).adding(None, force_offset=offset)]
+        found = [model.adding("coulomb", coulomb_force=level, transition_velocity=width)]
+    elif "friction_asymmetry" in model.free:
+        level, uneven = model.values["coulomb_force"], model.values["friction_asymmetry"]
+        offset = model.values.get("force_offset", 0.0) + uneven * level
+        found.append(model.without(("friction_asymmetry",)).adding(None, force_offset=offset))
+    dahl = {"coulomb_force": level, "presliding": _PRESLIDING * sizes.displacement}
+    if model.friction in ("none", "coulomb"):
+        found.append(found[-1].without((), "none").adding("dahl", **dahl))
+    return found
 
 
 def bends_less(model: Model) -> list[Model]:

@@ -21,6 +21,7 @@ from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.trials import FAR
 from inerter.identify.model import Model
 from inerter.identify.transient import RELAXING
+from inerter.parallel_steps import parallel
 
 if TYPE_CHECKING:
     from inerter.diagnose.search import Scored, Search
@@ -68,11 +69,10 @@ def _much_better(
     noise = float(np.sqrt(np.mean([run.noise**2 for run in search.runs])))
     if error < CRITERIA.near_noise * noise:
         return None
-    starts = tuple(filter(search.may_be, starts))
-    if not starts:
-        return None
     limit = (1 - CRITERIA.large_gain) * error
-    fit = search.trials.fit(Candidate(effect, None, starts), (FAR * limit, np.inf), limit)
+    trials = [Candidate(effect, None, (start,)) for start in filter(search.may_be, starts)]
+    fits = parallel(lambda each: search.trials.fit(each, (FAR * limit, np.inf), limit), trials)
+    fit = min(fits, key=lambda each: each.rmse(masks), default=current.fit)
     if fit.rmse(masks) >= limit:
         return None
     scored = search.score(effect, None, fit)

@@ -49,7 +49,7 @@ def motion_facts(motion: Motion) -> MotionFacts:
         speed=speed,
         acceleration=float(np.max(np.abs(motion.acceleration[inner]))),
         rest=float(np.mean(np.abs(motion.velocity) < 0.01 * speed)),
-        repeats=_repeats(motion.force, parts, lengths),
+        repeats=_repeats(motion, parts, lengths),
     )
 
 
@@ -73,26 +73,30 @@ def strokes(displacement: Array, velocity: Array) -> list[tuple[int, int]]:
     return [part for part, size in zip(apart, lengths, strict=True) if size > LONG * longest]
 
 
-def _repeats(force: Array, parts: list[tuple[int, int]], lengths: Array) -> float | None:
-    """Rms of the force's difference between each stroke and the last one like it, per stroke."""
+def _repeats(motion: Motion, parts: list[tuple[int, int]], lengths: Array) -> float | None:
+    """Rms of the force's difference between each stroke and the last one like it, per stroke.
+
+    Like it is one at the same places as it goes on, in as long a time.
+    """
     differences = []
-    seen: list[tuple[float, int, Array]] = []
+    seen: list[tuple[float, int, Array, Array]] = []
     for (start, stop), length in zip(parts, lengths, strict=True):
         if stop - start < 20:
             continue
-        at = np.linspace(start, stop, POINTS)
-        shape = np.interp(at, np.arange(start, stop + 1), force[start : stop + 1])
-        for k, (other, duration, earlier) in enumerate(seen):
+        at, samples = np.linspace(start, stop, POINTS), np.arange(start, stop + 1)
+        force, place = (
+            np.interp(at, samples, channel[start : stop + 1])
+            for channel in (motion.force, motion.displacement)
+        )
+        for k, (other, duration, earlier, there) in enumerate(seen):
             alike = abs(other / length - 1) < ALIKE
-            if alike and abs(duration / (stop - start) - 1) < ALIKE:
-                # two ways of one length are told apart by the force at their beginning
-                both = np.corrcoef(shape, earlier)[0, 1]
-                if both > 0.5:
-                    differences.append(float(np.mean((shape - earlier) ** 2)))
-                    seen[k] = (length, stop - start, shape)
-                    break
+            apart = float(np.sqrt(np.mean((place - there) ** 2)))
+            if alike and abs(duration / (stop - start) - 1) < ALIKE and apart < ALIKE * length:
+                differences.append(float(np.mean((force - earlier) ** 2)))
+                seen[k] = (length, stop - start, force, place)
+                break
         else:
-            seen.append((length, stop - start, shape))
+            seen.append((length, stop - start, force, place))
     if len(differences) < 2:
         return None
     return float(np.sqrt(np.median(differences) / 2))
