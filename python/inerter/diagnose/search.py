@@ -188,17 +188,21 @@ class Search:
             if current.effect == until:
                 return current
             shape, current = current.model.shape, pruned(self, current)
+            with suppress(OverTimeError):
+                whole = whole_damper(self, current)
+                current = pruned(self, whole) if whole else current
             # what has gone may have stood in the way of what was not there yet
             if current.model.shape in (shape, *seen) or self.time.is_over():
                 return current
             seen.append(current.model.shape)
+            left = dict(effects_of(current.model, self.baseline))
+            self.found = [effect for effect in dict.fromkeys(self.found) if effect in left]
 
     def _added(self, current: Scored, until: str | None, most: int) -> Scored:
         """Effects added one after another."""
         with suppress(OverTimeError):
             while len(self.found) < most and not self.time.is_over():
                 chosen = self._best_step(current) or self._two_steps(current)
-                chosen = chosen or whole_damper(self, current)
                 if chosen is None:
                     break
                 self.found.append(chosen.effect)
