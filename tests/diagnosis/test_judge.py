@@ -66,7 +66,7 @@ def test_calm_is_all_but_blows() -> None:
     raw = SimpleNamespace(masks=masks, errors=lambda model: left[model.free])
     found = judge(noise(1), noise(1))
     found = Judge(found.band, cast(Any, raw), found.weighed, found.preparation, found.baseline)
-    (calm,) = found.calm(RICH)
+    (calm,) = found.calm(left[RICH.free])
     assert not calm[700:720].any()
     assert calm.sum() == COUNT - 20
     assert found.taken_in_calm(SIMPLE, RICH) == pytest.approx(2.0, rel=0.02)

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 from inerter.diagnose.composition import effects_of
 from inerter.diagnose.result import Rival
 from inerter.diagnose.rivals import Standing
-from inerter.diagnose.stages import Confirmed, Settled, compared, confirmed, searched
+from inerter.diagnose.stages import Confirmed, Searched, Settled, compared, confirmed, searched
 from inerter.diagnose.stages.confirming import stands_in
 from inerter.diagnose.start import Given, prepared
+from inerter.diagnose.vehicle.search import VehicleSearch
+from inerter.identify.model import Model
 from inerter.records import Record
 
 
@@ -99,3 +103,51 @@ def test_what_is_excluded_comes_back_on_no_way(effects_seed: int) -> None:
     there = {name for name, _ in effects_of(model.model, baseline)}
     assert "viscous_friction" in there
     assert not there & excluded
+
+
+def test_a_play_that_goes_leaves_the_whole_record(
+    monkeypatch: pytest.MonkeyPatch, effects_seed: int
+) -> None:
+    """While there is a play a run is followed from a contact on; without it nothing is left out."""
+    record = bench(100.0, 8.0, effects_seed)
+    start = prepared(Given(records=[record]))
+    plain = searched(start)
+
+    def play_is_needless(found: Searched, play: Model) -> Searched:
+        return replace(plain, data=plain.data.with_play(play))
+
+    shaft = {"series_frequency": 30.0, "series_loss": 0.1, "backlash": 1e-5}
+    monkeypatch.setattr(
+        "inerter.diagnose.stages.searching._play",
+        lambda found: found.final.model.adding(None, **shaft),
+    )
+    monkeypatch.setattr("inerter.diagnose.stages.searching._with_play", play_is_needless)
+    found = searched(start)
+    assert {name for name, _ in effects_of(found.final.model, start.baseline)} == {
+        "viscous_friction", "coulomb_friction",
+    }  # fmt: skip
+    for run, before in zip(found.data.whole, plain.data.whole, strict=True):
+        assert run.inner.sum() == before.inner.sum()
+    assert "backlash" not in found.search.excluded
+
+
+def test_a_vehicle_is_searched_on_where_something_went(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What had to go first may have stood in the way."""
+    told: list[int] = []
+
+    def scored(count: int) -> SimpleNamespace:
+        return SimpleNamespace(model=SimpleNamespace(effects=[None] * count))
+
+    def added(search: VehicleSearch, current: SimpleNamespace) -> SimpleNamespace:
+        told.append(len(current.model.effects))
+        return scored(3) if len(told) == 1 else current
+
+    monkeypatch.setattr(VehicleSearch, "_added", added)
+    monkeypatch.setattr(VehicleSearch, "_prune", lambda search, current: scored(2))
+    monkeypatch.setattr(VehicleSearch, "_score", lambda search, fit: scored(0))
+    monkeypatch.setattr("inerter.diagnose.vehicle.search.fit_all", lambda problem, trials: [None])
+    search = object.__new__(VehicleSearch)
+    search.problem = cast(Any, None)
+    found = search.run()
+    assert len(found.model.effects) == 2
+    assert told == [0, 2]

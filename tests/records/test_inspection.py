@@ -11,8 +11,10 @@ import numpy as np
 import pytest
 from inerter.inspection.channel import channel_facts
 from inerter.inspection.facts import facts_of, span
+from inerter.inspection.motion import motion_facts
 from inerter.inspection.tells import Tell, clauses, words
 from inerter.records import Record, check_records
+from inerter.records.motion import smooth
 from inerter.records.steps import converter_step
 from numpy.typing import NDArray
 
@@ -227,3 +229,19 @@ def test_friction_with_memory_is_no_negative_inertance() -> None:
     assert {tell.verdict for tell in found} == {"not told"}
     (said,) = clauses(found)
     assert "a linear model makes the inertance negative" in said
+
+
+def test_a_force_repeats_where_strokes_do() -> None:
+    """Strokes of one length at other places are none that repeat: a spring is bent otherwise."""
+    rng = np.random.default_rng(5)
+    t = np.asarray(2e-3 * np.arange(10_000), dtype=np.float64)
+
+    def repeats(frequencies: tuple[float, ...]) -> float | None:
+        angle = 2 * np.pi * np.outer(frequencies, t)
+        x = np.asarray((0.02 / np.array(frequencies)) @ np.sin(angle), dtype=np.float64)
+        force = np.asarray(4e3 * x + rng.normal(0.0, 0.5, t.size), dtype=np.float64)
+        record = Record(name="run", time=t, displacement=x, force=force)
+        return motion_facts(smooth(record, 20.0)).repeats
+
+    assert repeats((1.3,)) == pytest.approx(0.5, rel=0.3)
+    assert repeats((1.3, 1.3 / np.sqrt(7), 0.91 * np.e)) is None

@@ -95,12 +95,3 @@ def divided(
         records=records, preparation=preparation, runs=runs, split=parted, whole=raw, full=full,
         band=band, raw=Problem(raw, full.holdout, band.scales),
     )  # fmt: skip
-
-
-def everywhere(problem: Problem) -> Problem:
-    """The problem with what only a record itself can tell read off all of it, held out or not.
-
-    How a part was bent as a record began says nothing of the model; read off the end of the record
-    alone it would be anything.
-    """
-    return problem.with_masks([run.inner for run in problem.runs])

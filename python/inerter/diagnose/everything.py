@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.diagnose.chain import Link
-from inerter.diagnose.data import Data, divided, everywhere
+from inerter.diagnose.data import Data, divided
 from inerter.diagnose.excerpts import Excerpts
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.stages import Confirmed, judge_of, weighed_runs
@@ -112,6 +112,6 @@ def _judged(judge: Judge, link: Link, first: Fit, last: Fit) -> Link:
 
 def errors_of(stands: Confirmed) -> Sequence[Array]:
     """Measured minus predicted force of every run where the motion is known, 0 elsewhere [N]."""
-    errors = everywhere(stands.data.raw).errors(stands.fit.model)
+    errors = stands.data.raw.errors(stands.fit.model)
     pairs = zip(errors, stands.data.whole, strict=True)
     return [np.where(run.inner, error, 0.0) for error, run in pairs]

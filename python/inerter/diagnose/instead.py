@@ -49,12 +49,17 @@ def fitted_instead(search: Search, found: Scored, effect: str, without: Fit) -> 
     return search.trials.fit_all(trials, without, found.fit)
 
 
+def is_near_noise(search: Search, error: float) -> bool:
+    """Whether an rms error [N] is so small that no more is tried in the place of what was found."""
+    noise = float(np.sqrt(np.mean([run.noise**2 for run in search.runs])))
+    return error < CRITERIA.near_noise * noise
+
+
 def instead(search: Search, found: Scored) -> Scored | None:
     """A model with another effect in the place of one, where that predicts better; or None."""
     masks, error = search.problem.masks, found.fit.rmse(search.problem.masks)
-    noise = float(np.sqrt(np.mean([run.noise**2 for run in search.runs])))
     effects = [effect for effect, _ in effects_of(found.model, search.baseline)]
-    if error < CRITERIA.near_noise * noise or len(effects) > CRITERIA.exchanged_of:
+    if is_near_noise(search, error) or len(effects) > CRITERIA.exchanged_of:
         return None
     limit = (1 - search.least) * error
     near: list[tuple[Candidate, Fit, Fit, Fitted]] = []

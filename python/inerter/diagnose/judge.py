@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.diagnose.advantage import advantage_of
 from inerter.diagnose.composition import is_shaft
 from inerter.diagnose.decision import visible, visible_delay
-from inerter.diagnose.statistics import block_squares, taken_away, where_apart
+from inerter.diagnose.statistics import block_squares, blow, taken_away, where_apart
 from inerter.identify.fit import Problem, rms
 from inerter.identify.model import Model
 from inerter.identify.split import Mask, blocks
@@ -19,9 +20,6 @@ from inerter.records.motion import NOISE_SEGMENT, force_noise
 from inerter.records.preparation import Preparation
 
 Array = NDArray[np.float64]
-
-# errors this many times what the median tells of a normal distribution are blows
-_BLOWS = 5.0
 
 
 @dataclass(frozen=True)
@@ -59,21 +57,22 @@ class Judge:
         """The same as it counts: what is far off behind a free play counts little [N]."""
         return rms(self.raw.residual(model), self.raw.masks)
 
-    def calm(self, model: Model) -> list[Mask]:
+    def calm(self, errors: Sequence[Array]) -> list[Mask]:
         """Held-out samples but for blows: a model with a play meets some at another moment."""
-        pairs = zip(self.raw.errors(model), self.raw.masks, strict=True)
-        sizes = [(np.abs(errors), mask) for errors, mask in pairs]
-        usual = np.median(np.concatenate([size[mask] for size, mask in sizes]))
-        return [mask & (size <= _BLOWS * 1.4826 * usual) for size, mask in sizes]
+        least = blow(np.concatenate([e[m] for e, m in zip(errors, self.raw.masks, strict=True)]))
+        pairs = zip(errors, self.raw.masks, strict=True)
+        return [mask & (np.abs(each) <= least) for each, mask in pairs]
 
     def taken_in_calm(self, simple: Model, rich: Model) -> float:
         """What the richer of two models takes away of the error but for its blows [N]."""
-        calm = self.calm(rich)
-        return taken_away(*(rms(self.raw.errors(m), calm) for m in (simple, rich)))
+        before, after = self.raw.errors(simple), self.raw.errors(rich)
+        calm = self.calm(after)
+        return taken_away(rms(before, calm), rms(after, calm))
 
     def left_in_calm(self, model: Model, noise: float) -> float:
         """What a model leaves above the noise [N] but for blows [N]."""
-        return taken_away(rms(self.raw.errors(model), self.calm(model)), noise)
+        errors = self.raw.errors(model)
+        return taken_away(rms(errors, self.calm(errors)), noise)
 
     def difference(self, one: Model, other: Model) -> float:
         """Rms difference of the forces that two models predict in the band [N]."""

@@ -18,7 +18,6 @@ from inerter.diagnose.budget.repeats import repeats
 from inerter.diagnose.clock_rate import on_one_clock
 from inerter.diagnose.composition import distinction
 from inerter.diagnose.creeping import without_creeping
-from inerter.diagnose.data import everywhere
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import as_sure_as_its_value, doubted, of_one_sine, with_own_value
 from inerter.diagnose.engines import simulate_engines
@@ -158,7 +157,7 @@ def _with_other_split(given: Given, stands: Confirmed, name: str, effect: str) -
     given.progress(f"{EFFECTS[effect].plain} shows in what is held out: holding out {name} instead")
     again = confirmed(settled(searched(prepared(replace(given, holdout=[name])))))
     before, after = (
-        rms(everywhere(each.data.raw).errors(each.fit.model), [r.inner for r in each.data.whole])
+        rms(each.data.raw.errors(each.fit.model), [run.inner for run in each.data.whole])
         for each in (stands, again)
     )
     return again if after < (1 - CRITERIA.gain) * before else None
@@ -171,7 +170,7 @@ def _with_scale(given: Given, stands: Confirmed) -> tuple[Given, Confirmed]:
     """
     for _ in range(2):
         final = stands.fit.model
-        errors, noise = everywhere(stands.data.raw).errors(final), stands.judge.noise_left(final)
+        errors, noise = stands.data.raw.errors(final), stands.judge.noise_left(final)
         odd = odd_scale(stands.data.whole, errors, noise, final.device().inertance)
         if not odd or given.time.is_over():
             break
@@ -179,7 +178,7 @@ def _with_scale(given: Given, stands: Confirmed) -> tuple[Given, Confirmed]:
         records = without_scale(given.records, odd)
         scaled = replace(given, records=records, scales=together(given.scales, odd))
         again = confirmed(settled(searched(prepared(scaled))))
-        after = everywhere(again.data.raw).errors(again.fit.model)
+        after = again.data.raw.errors(again.fit.model)
         before, after = (
             rms(each, [run.inner for run in stands.data.whole]) for each in (errors, after)
         )
@@ -210,7 +209,7 @@ def _stood(given: Given) -> tuple[Confirmed, Excerpts | None]:
 def other_split_of(stands: Confirmed) -> tuple[str, str] | None:
     """Another run to hold out, and the effect that would be found then besides, if any."""
     data, final = stands.data, stands.fit.model
-    errors, noise = everywhere(data.raw).errors(final), stands.judge.noise_left(final)
+    errors, noise = data.raw.errors(final), stands.judge.noise_left(final)
     if rms(errors, [run.inner for run in data.whole]) < CRITERIA.near_noise * noise:
         # no run tells of anything more
         return None
@@ -241,14 +240,15 @@ def diagnosis_of(
     baseline, extended = _accuracy(stands, stands.before.model), _accuracy(stands, final)
     floor = judge.noise_left(final)
     given.progress("measuring what repeats, and what more could be predicted")
-    errors = everywhere(data.raw).errors(final)
-    of_part = everywhere(part.raw).errors(final) if long else errors
-    in_band = everywhere(part.band).residual(final)
+    errors = data.raw.errors(final)
+    of_part = part.raw.errors(final) if long else errors
     remains = unexplained(
-        part.runs, part.split, in_band, floor, extended.rmse, part.whole,
+        part.runs, part.split, part.band.residual(final), floor, extended.rmse, part.whole,
         of_part, judge.motion_noise(final), further_channels(part.records, part.runs),
     )  # fmt: skip
-    remains = with_ceiling(part, of_part, floor, remains, judge.motion_noise(final), extended.rmse)
+    remains = with_ceiling(
+        part, of_part, floor, remains, judge.motion_noise(final), extended.rmse if long else None
+    )
     if "backlash" in final.free:
         # where the model is right, too, it meets some blows of a play at another moment
         calm = judge.left_in_calm(final, floor)
@@ -264,7 +264,9 @@ def diagnosis_of(
     again = repeats(data.whole, errors)
     missed = badly_missed(data, errors, floor)
     if not long and not missed:
-        missed = badly_missed_parts(data, errors, floor)
+        # how a shaft swung as a record began is read off its beginning, held out or not
+        settled_all = data.raw.with_masks([run.inner for run in data.whole]).errors(final)
+        missed = badly_missed_parts(data, settled_all, floor)
     if long and not missed:
         missed = badly_missed_stretches(long, errors_of(stands), extended.rmse, floor)
     own = RunValues() if long else run_values(data.whole, errors, floor, final)

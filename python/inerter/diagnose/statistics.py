@@ -15,6 +15,8 @@ Interval = tuple[float, float]
 
 # fewer blocks than these say nothing of how they scatter
 FEWEST_BLOCKS = 8
+# an error this many times the usual one, or an rms that is, is one of few large ones
+BLOWS = 5.0
 # residuals further apart than this share of their rms distance are so in the sense of `where_apart`
 APART = 0.5
 
@@ -36,6 +38,11 @@ def where_apart(
     square = sum(float(np.sum(d[m] ** 2)) for d, m in zip(apart, masks, strict=True))
     limit = APART * np.sqrt(square / max(sum(int(m.sum()) for m in masks), 1))
     return blocks([m & (np.abs(d) > limit) for d, m in zip(apart, masks, strict=True)])
+
+
+def blow(errors: Array) -> float:
+    """Size from which on one of some errors (n,) is a blow, by what the median tells of usual."""
+    return BLOWS * 1.4826 * float(np.median(np.abs(errors)))
 
 
 def taken_away(before: float, after: float) -> float:

@@ -18,6 +18,7 @@ from inerter.catalogue.scales import Scales
 from inerter.diagnose import bent_damping
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.instead import is_near_noise
 from inerter.diagnose.trials import FAR
 from inerter.identify.model import Model
 from inerter.identify.transient import RELAXING
@@ -66,8 +67,7 @@ def _much_better(
 ) -> Scored | None:
     """The best fit from some starts, where the error is more than noise and falls by much."""
     masks, error = search.problem.masks, current.fit.rmse(search.problem.masks)
-    noise = float(np.sqrt(np.mean([run.noise**2 for run in search.runs])))
-    if error < CRITERIA.near_noise * noise:
+    if is_near_noise(search, error):
         return None
     limit = (1 - CRITERIA.large_gain) * error
     trials = [Candidate(effect, None, (start,)) for start in filter(search.may_be, starts)]

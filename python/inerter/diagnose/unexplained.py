@@ -33,6 +33,7 @@ from inerter.diagnose.remainder.lines import lines
 from inerter.diagnose.remainder.proposal import propose
 from inerter.diagnose.remainder.words import MORE, OF_MOTION, summary
 from inerter.diagnose.result import Unexplained
+from inerter.diagnose.statistics import blow
 from inerter.identify.runs import BenchRun, on_clocks
 from inerter.identify.split import Split
 from inerter.records.motion import lowpass
@@ -65,8 +66,6 @@ EXCESS = 2.0
 EXCESS_PART = 0.05
 # share of what remains up to which its part in the band is so small that the rest is told of
 BELOW = 0.7
-# an rms this many times what the median tells of a normal distribution is made by few large errors
-BLOWS = 5.0
 
 
 def unexplained(
@@ -377,8 +376,8 @@ def _usual(
         return None
     held = _held_at(whole, runs, split)
     parts = [np.abs(r[m & run.inner]) for r, m, run in zip(residual, held, whole, strict=True)]
-    usual = float(np.median(np.concatenate(parts)))
-    return usual if raw > BLOWS * 1.4826 * usual else None
+    sizes = np.concatenate(parts)
+    return float(np.median(sizes)) if raw > blow(sizes) else None
 
 
 def _loud(louder: Bursts, floor: float, force: float, tests: int) -> bool:

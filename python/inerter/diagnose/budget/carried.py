@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from inerter.diagnose.budget.ceiling import SURE, Sums, fitted_masks, matters, parts_of
-from inerter.diagnose.data import Data, everywhere
+from inerter.diagnose.data import Data
 from inerter.diagnose.statistics import Interval, advantage, block_squares, gain_interval
 from inerter.identify.fit import rms
 from inerter.identify.model import Model
@@ -102,17 +102,17 @@ def carried(
     """
     if KIND in model.texts:
         return None
-    errors = everywhere(data.raw).errors(model)
+    errors = data.raw.errors(model)
     if learnt is None or learnt is data:
         found = _fitted(data, model, errors)
     else:
-        found = _fitted(learnt, model, everywhere(learnt.raw).errors(model))
+        found = _fitted(learnt, model, learnt.raw.errors(model))
     if found is None:
         return None
     found |= {"force_map_passive": 1.0} if passive else {}
     text = str(found.pop(KIND))
     rich = Model(model.friction, {**model.values, **found}, model.free, {**model.texts, KIND: text})
-    rest = everywhere(data.raw).errors(rich)
+    rest = data.raw.errors(rich)
     counted = blocks(data.raw.masks)
     before, after = block_squares(errors, counted), block_squares(rest, counted)
     total = max(sum(int(mask.sum()) for mask in data.raw.masks), 1)

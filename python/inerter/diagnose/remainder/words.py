@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from inerter.diagnose.statistics import taken_away
 from inerter.motion_units import TRANSLATION, Kind, force_word, shown_as, words
 
 WORDS = {
@@ -125,13 +126,13 @@ def summary(
         predicted = 0.0 if list(depends) == ["bursts"] else structure
     told = []
     if predicted > 0:
-        left = max(raw**2 - predicted**2, 0.0) ** 0.5
+        left = taken_away(raw, predicted)
         told.append(
             f"{predicted:.3g} {newton} rms can be predicted from the other data, which leaves "
             f"{left:.3g} {newton}"
         )
     if "bursts" in depends:
-        come = max(structure**2 - predicted**2, 0.0) ** 0.5
+        come = taken_away(structure, predicted)
         told.append(f"{come:.3g} {newton} rms come and go as the other data tell")
     text = (
         f"{start} {no_noise(raw, floor)}: {'; '.join(told)}. It "

@@ -74,12 +74,7 @@ def searched(start: Prepared) -> Searched:
         data = data.in_band(replace(data.preparation, force_band=wide))
     search = search_in(start, band)
     final = search.run(until="backlash")
-    for _ in range(CRITERIA.more_bands):
-        wider = _wider(data, band, final.model)
-        if "backlash" in final.model.free or wider is None:
-            break
-        band, search = wider, search_in(start, wider)
-        final = search.run(final.model, until="backlash")
+    band, search, final = _in_wider_bands(start, data, band, search, final)
     if calmer := _calmer(start, band, final.model):
         band, search, plainer = calmer
         final = search.run(plainer, until="backlash")
@@ -149,6 +144,21 @@ def _share_in_band(run: BenchRun) -> float:
 
 def _wider(data: Data, band: Preparation, model: Model) -> Preparation | None:
     return wider_band(data.records, band, data.full.fit, model, data.band.scales)
+
+
+def _in_wider_bands(
+    start: Prepared, data: Data, band: Preparation, search: Search, final: Scored
+) -> tuple[Preparation, Search, Scored]:
+    """The search gone on in the bands in which the model found predicts the force better."""
+    excluded = search.excluded
+    for _ in range(CRITERIA.more_bands):
+        wider = _wider(data, band, final.model)
+        if "backlash" in final.model.free or wider is None:
+            break
+        band, search = wider, search_in(start, wider)
+        search.excluded = excluded
+        final = search.run(final.model, until="backlash")
+    return band, search, final
 
 
 def _calmer(
@@ -272,16 +282,10 @@ def _with_play(found: Searched, play: Model) -> Searched:
 
 def _without_play(found: Searched, model: Model) -> Searched:
     """The search from what has done the work of a play on, along all of the runs again."""
-    start, data, band, search = found.prepared, found.data, found.band, found.search
+    start, data, search = found.prepared, found.data, found.search
     search.excluded |= _PLAY
     final = search.run(model)
-    for _ in range(CRITERIA.more_bands):
-        wider = _wider(data, band, final.model)
-        if wider is None:
-            break
-        band, search = wider, search_in(start, wider)
-        search.excluded |= _PLAY
-        final = search.run(final.model)
+    band, search, final = _in_wider_bands(start, data, found.band, search, final)
     search.excluded -= _PLAY
     if raw := _wider(data, data.preparation, final.model):
         data = data.in_band(raw)
