@@ -12,6 +12,7 @@ from inerter.diagnose.start import Given, prepared
 from inerter.records import Record
 from inerter.reference import NoiseLevels, hide_effect
 from inerter.reference.bench_channel import Channel, low_passed
+from scipy.signal import bessel, sosfilt
 
 RATE, FINE = 500.0, 4
 
@@ -49,6 +50,26 @@ def test_a_low_pass_of_a_jump_is_no_friction_with_memory(effects_seed: int) -> N
     assert found.parameters["force_filter"].value == pytest.approx(5.0, rel=0.02)
     assert found.parameters["coulomb_force"].value == pytest.approx(level, rel=0.02)
     assert found.parameters["inertance"].value == pytest.approx(54.0, rel=0.01)
+
+
+def test_a_jump_that_filters_of_both_channels_round_off_is_dry_friction() -> None:
+    """Along a quick sine, by as much of the speed as a filter of 67 Hz takes time."""
+    draw, rate, fine = np.random.default_rng(4), 200.0, 20
+    time = np.arange(-round(rate * fine), round(10 * rate * fine)) / (rate * fine)
+    omega = 2 * np.pi * 2.9
+    x, v = 7e-3 * np.sin(omega * time), 7e-3 * omega * np.cos(omega * time)
+    force = -59.0 * omega**2 * x + 107.0 * np.sign(v)
+    behind = bessel(3, 67.0, fs=rate * fine, norm="mag", output="sos")
+    rows = slice(round(rate * fine), None, fine)
+    channels = [sosfilt(behind, each)[rows] for each in (x, force)]
+    noise = [draw.standard_normal(each.size) for each in channels]
+    made = Record(
+        name="quick", time=time[rows], displacement=channels[0] + 2e-6 * noise[0],
+        force=channels[1] + 1.5 * noise[1],
+    )  # fmt: skip
+    found = diagnose_bench([made], carry="nothing")
+    assert [each.effect for each in found.findings] == ["coulomb_friction"]
+    assert found.parameters["coulomb_force"].value == pytest.approx(107.0, rel=0.03)
 
 
 DAHL = {"friction": "dahl", "coulomb_force": 30.0, "bristle_stiffness": 15e3}

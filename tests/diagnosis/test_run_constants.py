@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bench_runs import measured
+from inerter.diagnose.clipping import apart_from, limits_of
 from inerter.diagnose.run_constants import (
     constants,
     constants_in_words,
@@ -54,6 +55,27 @@ def record(
 def thinned(records: Sequence[Record]) -> list[BenchRun]:
     """In the band."""
     return [thin(motion) for motion in prepare(records).motions]
+
+
+def test_what_a_channel_cuts_off_is_no_constant() -> None:
+    """Of faster runs it hides more, and all on one side."""
+    runs = [record(i, pace=0.6 + 0.3 * i) for i in range(4)]
+    cut = [replace(each, force=np.maximum(each.force, -40.0)) for each in runs]
+    assert all(float(np.mean(each.force == -40.0)) > 0.02 for each in cut[1:])
+    smoothed = thinned(cut)
+    limits = limits_of(cut)
+    assert limits["force_minimum"] == pytest.approx(-40.0, abs=2.0)
+    assert constants(smoothed)
+    assert constants(apart_from(limits, smoothed)) == {}
+    # a constant that is there is still told
+    anew = [replace(cut[0], force=np.maximum(runs[0].force + 25.0, -40.0)), *cut[1:]]
+    found = constants(apart_from(limits, thinned(anew)))
+    assert found["run 0"] - found["run 1"] == pytest.approx(25.0, abs=2.0)
+
+
+def test_where_nothing_is_within_the_limits_there_is_no_constant() -> None:
+    smoothed = thinned([record(0), record(1)])
+    assert constants(apart_from({"force_minimum": 1e9}, smoothed)) == {}
 
 
 def test_a_stop_that_some_runs_reach_is_no_constant() -> None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inerter.catalogue.scales import Scales
 from inerter.diagnose import diagnose_bench
-from inerter.diagnose.bent_damping import bends_each_way
+from inerter.diagnose.bent_damping import bends_each_way, struts
+from inerter.diagnose.candidates import candidates
 from inerter.diagnose.together import mounts
 from inerter.identify.model import Model
 from inerter.records import Record
@@ -58,6 +61,73 @@ def test_branches_become_a_mount() -> None:
     assert {"stiffness", "force_offset", "branch_stiffness_3", "branch_time_3"} <= set(mount.free)
     assert 1e5 < mount.values["stiffness"] < 2e5
     assert mounts(mount, SIZES) == []
+
+
+def test_a_spring_is_tried_with_a_damper_where_there_is_neither() -> None:
+    def tried(model: Model, sizes: Scales = SIZES) -> list[tuple[str, ...]]:
+        every = [each for each in candidates(model, sizes) if each.effect == "parallel_stiffness"]
+        return [each.starts[0].free for each in every]
+
+    alone, both = ("inertance", "stiffness"), ("inertance", "stiffness", "viscous")
+    assert tried(BASELINE) == [alone, both]
+    assert tried(BASELINE.adding(None, viscous=1.0)) == [("inertance", "viscous", "stiffness")]
+    # along one sine it is an inertance of another size
+    assert tried(BASELINE, replace(SIZES, one_tone=True)) == []
+
+
+def test_a_strut_bends_and_rubs_behind_its_top_mount() -> None:
+    damped = BASELINE.adding(None, viscous=900.0)
+    (strut,) = struts(damped, SIZES)
+    assert strut.friction == "dahl"
+    assert {"damping_knee", "damping_beyond", "damper_stiffness", "presliding"} <= set(strut.free)
+    assert struts(BASELINE, SIZES) == []
+    assert struts(strut, SIZES) == []
+    assert struts(damped.adding("lugre", coulomb_force=9.0, presliding=1e-4), SIZES) == []
+    kept = {"coulomb_force": 9.0, "presliding": 1e-4}
+    (strut,) = struts(damped.adding("dahl", **kept), SIZES)
+    assert {name: strut.values[name] for name in kept} == kept
+
+
+@pytest.mark.long
+def test_a_strut_behind_its_top_mount_is_found_beside_its_spring() -> None:
+    """Its own simulation, steps that are implicit in the speed of the damper."""
+    draw = np.random.default_rng(2)
+    step = 1 / (500 * 10)
+    time = np.arange(0, 8, step)
+    frequency = np.sort(draw.uniform(0.4, 8, 20))[:, None]
+    size = frequency**-0.7
+    size *= 0.01 / np.sqrt((size**2).sum() / 2)
+    speed = 2 * np.pi * frequency
+    angle = speed * time + draw.uniform(0, 2 * np.pi, frequency.shape)
+    x, a = (size * np.sin(angle)).sum(0), -(size * speed**2 * np.sin(angle)).sum(0)
+    mount, rubs = 2e5, 3e4
+    speeds = np.linspace(-3, 3, 60001)
+    force_at = 2200 * speeds / np.sqrt(1 + (speeds / 0.15) ** 2) + 500 * speeds
+    force, behind = np.empty_like(x), x[0]
+    for i, place in enumerate(x):
+        # D(w) = k (x - y - h w)
+        w = np.interp(mount * (place - behind), force_at + mount * step * speeds, speeds)
+        behind += step * w
+        force[i] = mount * (place - behind)
+    bristle = 0.0
+    for i, moved in enumerate(np.diff(x, prepend=x[0])):
+        bristle += rubs * moved * (1 - np.sign(moved) * bristle / 20.0)
+        force[i] += bristle + 14e3 * x[i] + 2.0 * a[i]
+    x, force = x[::10], force[::10]
+    record = Record(
+        name="strut", time=time[::10], displacement=x + 2e-6 * draw.standard_normal(x.size),
+        force=force + 1.0 * draw.standard_normal(x.size),
+    )  # fmt: skip
+    found = diagnose_bench([record])
+    assert {each.effect for each in found.findings} >= {
+        "parallel_stiffness", "hysteretic_friction", "digressive_damping", "damper_elasticity",
+    }  # fmt: skip
+    assert found.baseline.rmse > 200.0
+    assert found.extended.rmse < 2.0
+    values = {name: each.value for name, each in found.parameters.items()}
+    assert values["damper_stiffness"] == pytest.approx(mount, rel=0.1)
+    assert values["stiffness"] == pytest.approx(14e3, rel=0.02)
+    assert values["coulomb_force"] == pytest.approx(20.0, rel=0.2)
 
 
 @pytest.mark.long

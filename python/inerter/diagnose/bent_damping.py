@@ -22,6 +22,8 @@ _LINE, _POWER = "damping_knee", "damping_power_knee"
 _BACK = ("damping_knee_back", "damping_beyond_back")
 # of a typical displacement
 _PRESLIDING = 0.02
+# stiffness of a mount over force per displacement
+_MOUNT = 10.0
 # slope at rest over that of a straight line, knee over a typical speed, power
 _POWERS = ((20.0, 0.01, 0.35), (3.0, 0.2, 0.5), (2.0, 0.5, -0.8), (1.0, 1.5, -0.8))
 
@@ -52,6 +54,26 @@ def lags(model: Model, sizes: Scales) -> Iterator[Candidate]:
             model.adding(None, **{SPRING: ratio * unit}) for ratio in (2.0, 8.0, 30.0, 100.0)
         )
         yield Candidate("damper_elasticity", None, starts)
+
+
+def struts(model: Model, sizes: Scales) -> list[Model]:
+    """Damping that bends and dry friction, both behind a spring, as a strut behind its top mount.
+
+    Friction behind a spring is Dahl's.
+    """
+    damped = "viscous" in model.free and SPRING not in model.values
+    if sizes.one_tone or not damped or model.friction not in ("none", "coulomb", "dahl"):
+        return []
+    bent = model
+    if not is_bent(model):
+        knee = sizes.velocity
+        bent = model.adding(None, damping_knee=knee, damping_beyond=0.3)
+    level = model.values.get("coulomb_force") or FRICTION_SHARE * sizes.force
+    if model.friction != "dahl":
+        dahl = {"coulomb_force": level, "presliding": _PRESLIDING * sizes.displacement}
+        bent = bent.without((), "none").adding("dahl", **dahl)
+    stiffness = _MOUNT * sizes.force / sizes.displacement
+    return [bent.adding(None, **{SPRING: stiffness})]
 
 
 def bends(model: Model, linear: float, sizes: Scales) -> Iterator[Candidate]:

@@ -28,6 +28,7 @@ from inerter.catalogue.scales import Scales
 from inerter.diagnose import bent_damping
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.composition import carries, width
+from inerter.diagnose.end_stops import end_stops
 from inerter.diagnose.stated import shafts, stated_candidates
 from inerter.diagnose.where_losses_act import (
     may_damp_behind,
@@ -270,48 +271,6 @@ _OF_KIND: dict[str, Build] = {
 # --- with starting points of their own ----------------------------------------------------------
 
 
-def _end_stop(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    """Stops at one end or both; where there is one that at the other end, and rubber that stiffens.
-
-    Both ends have one stiffness.
-    """
-    if not np.isfinite(sizes.travel).all():
-        return
-    low, high = sizes.travel
-    share = 0.5 * (high - low)
-    deep = (0.03, 0.12, 0.3, 0.6)
-    lower = [{"stop_lower": low + depth * share} for depth in deep]
-    upper = [{"stop_upper": high - depth * share} for depth in deep]
-    if "stop_stiffness" in model.values:
-        for name, places in (("stop_lower", lower), ("stop_upper", upper)):
-            if name not in model.values:
-                starts = tuple(model.adding(None, **place) for place in places)
-                yield Candidate(effect.name, name, starts)
-        yield from _rubber(effect, model, low, high)
-        return
-    contact = {
-        "stop_stiffness": 5 * sizes.force / sizes.displacement,
-        "stop_damping": 0.1 / sizes.velocity,
-    }
-    both = [one | other for one, other in zip(lower, upper, strict=True)]
-    for form, places in (("upper", upper), ("lower", lower), ("both", both)):
-        starts = tuple(model.adding(None, **place, **contact) for place in places)
-        yield Candidate(effect.name, form, starts)
-
-
-def _rubber(effect: Effect, model: Model, low: float, high: float) -> Iterator[Candidate]:
-    """From a stop that does not stiffen, and from one that mostly does."""
-    deepest = max(
-        model.values.get("stop_lower", low) - low, high - model.values.get("stop_upper", high)
-    )
-    if "stop_stiffness_cubic" in model.values or deepest <= 0.0:
-        return
-    stiffness = model.values["stop_stiffness"]
-    softer = {"stop_stiffness": 0.2 * stiffness, "stop_stiffness_cubic": stiffness / deepest**2}
-    starts = (model.adding(None, stop_stiffness_cubic=0.0), model.adding(None, **softer))
-    yield Candidate(effect.name, "rubber", starts)
-
-
 def _gas(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     stated = {"gas_push", "gas_pressure"} & model.values.keys()
     if stated or not np.isfinite(sizes.travel).all():
@@ -348,9 +307,14 @@ def _variable_inertance(effect: Effect, model: Model, sizes: Scales) -> Iterator
 
 
 def _stiffness(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """A spring, and one with a damper beside it: neither does much alone where both are strong."""
     # along one sine a spring is an inertance with the other sign: there is nothing to choose
-    if not (sizes.one_tone and "inertance" in model.free):
-        yield from _term(effect, model, sizes)
+    if sizes.one_tone and "inertance" in model.free:
+        return
+    yield from _term(effect, model, sizes)
+    if model.values.keys().isdisjoint(("stiffness", "viscous")):
+        both = model.adding(None, stiffness=0.0, viscous=0.5 * sizes.force / sizes.velocity)
+        yield Candidate(effect.name, "beside a damper", (both,))
 
 
 def _hardening(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
@@ -442,7 +406,7 @@ _SPECIAL: dict[str, Build] = {
     "inertance_error": _inertance,
     "parallel_stiffness": _stiffness,
     "variable_inertance": _variable_inertance,
-    "end_stop": _end_stop,
+    "end_stop": end_stops,
     "hardening_stiffness": _hardening,
     "gas_spring": _gas,
     "sensor_saturation": _saturation,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +19,8 @@ SATURATION = EFFECTS["sensor_saturation"].name
 _LIMITS = {"upper": "force_maximum", "lower": "force_minimum"}
 # share of the range by which a limit begins within the level that records show
 _WITHIN = 0.005
+# the same within which a smoothed force is at it
+_BESIDE = 0.03
 # share of the samples at its limits from which on such a channel is a constant force
 _MOST = 0.8
 
@@ -28,6 +31,13 @@ def begun_clipped(records: Sequence[Record], model: Model) -> Model | None:
     What flat tops hide looks like a friction that falls with the speed, a spring, a curve; found
     before the limits, they lead astray. None where no record shows any, or another one goes beyond.
     """
+    found = limits_of(records)
+    missing = {name: value for name, value in found.items() if name not in model.values}
+    return model.adding(None, **missing) if missing else None
+
+
+def limits_of(records: Sequence[Record]) -> dict[str, float]:
+    """Limits [N] at which records show again and again that the force is cut off, by name."""
     high = max(float(record.force.max()) for record in records)
     low = min(float(record.force.min()) for record in records)
     found: dict[str, float] = {}
@@ -38,8 +48,18 @@ def begun_clipped(records: Sequence[Record], model: Model) -> Model | None:
             if beyond <= _WITHIN * (high - low):
                 inwards = -1.0 if end == "upper" else 1.0
                 found[_LIMITS[end]] = level + inwards * _WITHIN * (high - low)
-    missing = {name: value for name, value in found.items() if name not in model.values}
-    return model.adding(None, **missing) if missing else None
+    return found
+
+
+def apart_from(limits: Mapping[str, float], runs: Sequence[BenchRun]) -> list[BenchRun]:
+    """Runs without the samples whose force is at limits [N], where it says nothing."""
+    high = limits.get(_LIMITS["upper"], np.inf)
+    low = limits.get(_LIMITS["lower"], -np.inf)
+    within = _BESIDE * (max(run.force.max() for run in runs) - min(r.force.min() for r in runs))
+    return [
+        replace(run, inner=run.inner & (run.force < high - within) & (run.force > low + within))
+        for run in runs
+    ]
 
 
 def hides_nearly_all(model: Model, runs: Sequence[BenchRun]) -> bool:

@@ -37,7 +37,7 @@ from inerter.diagnose.play import is_felt
 from inerter.diagnose.prune import pruned
 from inerter.diagnose.statistics import Array, block_squares
 from inerter.diagnose.time_limit import OverTimeError, TimeLimit
-from inerter.diagnose.together import whole_damper, whole_mount
+from inerter.diagnose.together import whole_damper, whole_mount, whole_strut
 from inerter.diagnose.tone import Witness, is_harmonic, tone_candidate
 from inerter.diagnose.trials import Trials, plain_beside, shortlist_of
 from inerter.identify.fit import Fit, Problem
@@ -190,7 +190,7 @@ class Search:
             shape, current = current.model.shape, pruned(self, current)
             with suppress(OverTimeError):
                 whole = whole_damper(self, current)
-                current = pruned(self, whole) if whole else current
+                current = pruned(self, exchanged(self, whole)) if whole else current
             # what has gone may have stood in the way of what was not there yet
             if current.model.shape in (shape, *seen) or self.time.is_over():
                 return current
@@ -208,7 +208,7 @@ class Search:
                 self.found.append(chosen.effect)
                 if chosen.effect == until:
                     return chosen
-                chosen = whole_mount(self, chosen) or chosen
+                chosen = whole_mount(self, chosen) or whole_strut(self, chosen) or chosen
                 before, current = current.model, exchanged(self, chosen)
                 if before.shape == current.model.shape:
                     # the exchange takes back what the step has brought, and would again

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from inerter.core import Device
 from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.budget.carried import Carrying
+from inerter.diagnose.clipping import apart_from, limits_of
 from inerter.diagnose.clock_rate import ClockRate
 from inerter.diagnose.data import Data, divided
 from inerter.diagnose.run_constants import constants, contradicting, without_constants
@@ -104,7 +105,7 @@ def prepared(given: Given) -> Prepared:
     refuse_unusable(records)
     given.progress("smoothing: choosing the cut-off")
     smoothed = prepare(records)
-    runs = [thin(motion) for motion in smoothed.motions]
+    runs = apart_from(limits_of(records), [thin(motion) for motion in smoothed.motions])
     apart = constants(runs)
     if apart:
         records = without_constants(records, apart)

@@ -17,6 +17,7 @@ from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.scales import Scales
 from inerter.diagnose import bent_damping
 from inerter.diagnose.candidate import Candidate
+from inerter.diagnose.composition import is_distinct
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.instead import is_near_noise
 from inerter.diagnose.trials import FAR
@@ -27,7 +28,7 @@ from inerter.parallel_steps import parallel
 if TYPE_CHECKING:
     from inerter.diagnose.search import Scored, Search
 
-_RELAXES = EFFECTS["viscoelasticity"].name
+_RELAXES, _LAGS = EFFECTS["viscoelasticity"].name, EFFECTS["damper_elasticity"].name
 _BRANCHES = range(1, len(RELAXING) + 1)
 # time constants of a mount's branches per period of the motion, and their share of the stiffness
 _TIMES, _SHARE = (0.03, 0.2, 1.5), 0.15
@@ -39,6 +40,13 @@ def whole_damper(search: Search, current: Scored) -> Scored | None:
         return None
     starts = bent_damping.bends_each_way(current.model, search.problem.scales)
     return _much_better(search, current, bent_damping.EFFECT, starts)
+
+
+def whole_strut(search: Search, current: Scored) -> Scored | None:
+    """A damper that bends and rubs behind a spring, where that predicts much better."""
+    starts = bent_damping.struts(current.model, search.problem.scales)
+    found = _much_better(search, current, bent_damping.EFFECT, starts)
+    return found if found and is_distinct(_LAGS, found.fit, search.baseline) else None
 
 
 def whole_mount(search: Search, current: Scored) -> Scored | None:
