@@ -55,6 +55,7 @@ from inerter.diagnose.run_scales import (
 )
 from inerter.diagnose.run_values import RunValues, run_values
 from inerter.diagnose.shape_of_stop import as_shape_of_stop
+from inerter.diagnose.slope_of_gas import with_stiffness_of_gas
 from inerter.diagnose.stages import Confirmed, confirmed, searched, settled
 from inerter.diagnose.standstill import without_standstill
 from inerter.diagnose.start import Given, prepared
@@ -270,20 +271,14 @@ def diagnosis_of(
     if long and not missed:
         missed = badly_missed_stretches(long, errors_of(stands), extended.rmse, floor)
     own = RunValues() if long else run_values(data.whole, errors, floor, final)
-    values = parameter_values(
-        stands.fit,
-        given.device,
-        stands.searched.prepared.baseline.values.get("delay", 0.0),
-        motion,
-        stands.searched.search.problem.scales,
-    )
-    same = exchanges(
-        stands.searched.search,
-        stands.fit,
-        [link.effect for link in stands.chain],
-        stands.searched.covered,
-    )
     searched = stands.searched
+    delay, scales = (
+        searched.prepared.baseline.values.get("delay", 0.0),
+        searched.search.problem.scales,
+    )
+    values = parameter_values(stands.fit, given.device, delay, motion, scales)
+    named = [link.effect for link in stands.chain]
+    same = exchanges(searched.search, stands.fit, named, searched.covered)
 
     def weighed(finding: Finding) -> Finding:
         """A finding with its members, as sure as its own value and what remains let it be."""
@@ -293,6 +288,7 @@ def diagnosis_of(
         )
         told = with_own_value(told, finding.confidence, errors > CRITERIA.own_value)
         told = with_side(as_shape_of_stop(told, final), final)
+        told = with_stiffness_of_gas(told, stands.fit, motion)
         return doubted(as_sure_as_its_value(told, errors), remains.structure)
 
     findings = [weighed(finding) for finding in _findings(stands, values)]
