@@ -53,19 +53,19 @@ def test_a_low_pass_of_a_jump_is_no_friction_with_memory(effects_seed: int) -> N
 
 
 def test_a_jump_that_filters_of_both_channels_round_off_is_dry_friction() -> None:
-    """Along a quick sine, by as much of the speed as a filter of 67 Hz takes time."""
+    """Along a quick sine, by as much of the speed as a filter of 50 Hz takes time."""
     draw, rate, fine = np.random.default_rng(4), 200.0, 20
     time = np.arange(-round(rate * fine), round(10 * rate * fine)) / (rate * fine)
-    omega = 2 * np.pi * 4.6
+    omega = 2 * np.pi * 6.0
     x, v = 7e-3 * np.sin(omega * time), 7e-3 * omega * np.cos(omega * time)
     force = -59.0 * omega**2 * x + 107.0 * np.sign(v)
-    behind = bessel(3, 67.0, fs=rate * fine, norm="mag", output="sos")
+    behind = bessel(3, 50.0, fs=rate * fine, norm="mag", output="sos")
     rows = slice(round(rate * fine), None, fine)
     channels = [np.asarray(sosfilt(behind, each))[rows] for each in (x, force)]
     noise = draw.standard_normal((2, channels[0].size))
     made = Record(
         name="quick", time=time[rows], displacement=channels[0] + 2e-6 * noise[0],
-        force=channels[1] + 1.5 * noise[1],
+        force=channels[1] + 0.8 * noise[1],
     )  # fmt: skip
     found = diagnose_bench([made], carry="nothing")
     assert [each.effect for each in found.findings] == ["coulomb_friction"]
