@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest.mock import Mock, patch
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from inerter.catalogue.scales import Scales
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.bent_damping import bends_each_way, struts
 from inerter.diagnose.candidates import candidates
-from inerter.diagnose.together import mounts
+from inerter.diagnose.together import mounts, whole_strut
 from inerter.identify.model import Model
 from inerter.records import Record
 from scipy.signal import lfilter
@@ -86,6 +87,21 @@ def test_a_strut_bends_and_rubs_behind_its_top_mount() -> None:
     kept = {"coulomb_force": 9.0, "presliding": 1e-4}
     (strut,) = struts(damped.adding("dahl", **kept), SIZES)
     assert {name: strut.values[name] for name in kept} == kept
+
+
+def test_what_no_device_can_be_is_not_tried() -> None:
+    """Damping that falls with the speed has no spring before it."""
+    falls = {"viscous": 900.0, "damping_power_knee": 0.1, "damping_exponent": -0.1}
+    model = BASELINE.adding(None, **falls).holding(damping_beyond=0.0)
+    (strut,) = struts(model, SIZES)
+    assert not strut.is_possible
+    fit = Mock(model=model)
+    fit.rmse.return_value = 50.0
+    search = Mock()
+    search.problem.scales = SIZES
+    with patch("inerter.diagnose.together.is_near_noise", return_value=False):
+        assert whole_strut(search, Mock(model=model, fit=fit)) is None
+    search.trials.fit.assert_not_called()
 
 
 @pytest.mark.long

@@ -78,7 +78,8 @@ def _much_better(
     if is_near_noise(search, error):
         return None
     limit = (1 - CRITERIA.large_gain) * error
-    trials = [Candidate(effect, None, (start,)) for start in filter(search.may_be, starts)]
+    possible = [start for start in starts if start.is_possible and search.may_be(start)]
+    trials = [Candidate(effect, None, (start,)) for start in possible]
     fits = parallel(lambda each: search.trials.fit(each, (FAR * limit, np.inf), limit), trials)
     fit = min(fits, key=lambda each: each.rmse(masks), default=current.fit)
     if fit.rmse(masks) >= limit:
