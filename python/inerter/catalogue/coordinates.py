@@ -142,7 +142,7 @@ _ALL = (
         name="transition_velocity", unit="m/s", logarithmic=True, none=None, nuisance=True,
         size=lambda s: s.velocity, lower=lambda s: 1e-4 * s.velocity,
         # filters that both channels have round off the jump of a quick sine by that much
-        upper=lambda s: (0.3 if s.one_tone else 0.1) * s.velocity,
+        upper=lambda s: (0.3 if s.one_tone else 0.05) * s.velocity,
     ),
     Coordinate(
         name="presliding", unit="m", words={"bristle_stiffness": "bristle stiffness sigma0"},

@@ -64,16 +64,13 @@ def struts(model: Model, sizes: Scales) -> list[Model]:
     damped = "viscous" in model.free and SPRING not in model.values
     if sizes.one_tone or not damped or model.friction not in ("none", "coulomb", "dahl"):
         return []
-    bent = model
+    strut = model.adding(None, **{SPRING: _MOUNT * sizes.force / sizes.displacement})
     if not is_bent(model):
-        knee = sizes.velocity
-        bent = model.adding(None, damping_knee=knee, damping_beyond=0.3)
-    level = model.values.get("coulomb_force") or FRICTION_SHARE * sizes.force
+        strut = strut.adding(None, damping_knee=sizes.velocity, damping_beyond=0.3)
     if model.friction != "dahl":
-        dahl = {"coulomb_force": level, "presliding": _PRESLIDING * sizes.displacement}
-        bent = bent.without((), "none").adding("dahl", **dahl)
-    stiffness = _MOUNT * sizes.force / sizes.displacement
-    return [bent.adding(None, **{SPRING: stiffness})]
+        level = model.values.get("coulomb_force") or FRICTION_SHARE * sizes.force
+        strut = _with_memory(strut, level, sizes)
+    return [strut]
 
 
 def bends(model: Model, linear: float, sizes: Scales) -> Iterator[Candidate]:
@@ -176,10 +173,15 @@ def _beside_friction(model: Model, sizes: Scales) -> list[Model]:
         level, uneven = model.values["coulomb_force"], model.values["friction_asymmetry"]
         offset = model.values.get("force_offset", 0.0) + uneven * level
         found.append(model.without(("friction_asymmetry",)).adding(None, force_offset=offset))
-    dahl = {"coulomb_force": level, "presliding": _PRESLIDING * sizes.displacement}
     if model.friction in ("none", "coulomb"):
-        found.append(found[-1].without((), "none").adding("dahl", **dahl))
+        found.append(_with_memory(found[-1], level, sizes))
     return found
+
+
+def _with_memory(model: Model, level: float, sizes: Scales) -> Model:
+    """With Dahl friction of a level [N]."""
+    dahl = {"coulomb_force": level, "presliding": _PRESLIDING * sizes.displacement}
+    return model.without((), "none").adding("dahl", **dahl)
 
 
 def bends_less(model: Model) -> list[Model]:

@@ -272,10 +272,8 @@ def diagnosis_of(
         missed = badly_missed_stretches(long, errors_of(stands), extended.rmse, floor)
     own = RunValues() if long else run_values(data.whole, errors, floor, final)
     searched = stands.searched
-    delay, scales = (
-        searched.prepared.baseline.values.get("delay", 0.0),
-        searched.search.problem.scales,
-    )
+    delay = searched.prepared.baseline.values.get("delay", 0.0)
+    scales = searched.search.problem.scales
     values = parameter_values(stands.fit, given.device, delay, motion, scales)
     named = [link.effect for link in stands.chain]
     same = exchanges(searched.search, stands.fit, named, searched.covered)

@@ -62,9 +62,7 @@ def constants(runs: Sequence[BenchRun]) -> dict[str, float]:
 
     Those of a long run are read off the whole, not off its parts.
     """
-    if len(runs) < 2 or any(run.part for run in runs):
-        return {}
-    if not all(run.inner.any() for run in runs):
+    if len(runs) < 2 or any(run.part or not run.inner.any() for run in runs):
         return {}
     runs = on_clocks(runs)
     if any(_goes_one_way(run) for run in runs) or not _share_places(runs):
