@@ -252,6 +252,28 @@ def test_what_is_seen_of_a_beginning_alone_tells_how_a_bristle_was_bent() -> Non
     assert np.max(np.abs(left[TIME >= 0.1])) < 0.1
 
 
+@pytest.mark.parametrize(
+    "law, own",
+    [
+        ("dahl", {"coulomb_force": 20.0, "presliding": 5e-3}),
+        ("lugre", {"coulomb_force": 20.0, "presliding": 5e-3}),
+        # as of Dahl's law
+        ("bouc_wen", {"bw_stiffness": 4e3, "bw_beta": 200.0, "bw_gamma": 0.0}),
+    ],
+)
+@pytest.mark.parametrize("load", [{"load_friction": 0.4}, {"mu_forward": 0.2, "mu_backward": 0.8}])
+def test_under_a_load_a_bristle_forgets_more_slowly(
+    run: BenchRun, law: str, own: dict[str, float], load: dict[str, float]
+) -> None:
+    """The force through the inertance is up to five times what the bristle holds without it."""
+    model = Model(law, {"inertance": 60.0, **own, **load}, ())
+    begun = (0.0, 1e-4)
+    forces = [run.along(model.device(), state)["total"] for state in begun]
+    change = forces[1] - forces[0]
+    left = settled(model, run, change, np.ones(change.size, np.bool_))
+    assert np.linalg.norm(left) < 0.03 * np.linalg.norm(change)
+
+
 def test_the_first_force_is_read_as_late_as_it_is_shown(run: BenchRun) -> None:
     """A bristle 4 ms late begins as the same one in time does."""
     values = {"inertance": 60.0, "coulomb_force": 400.0, "presliding": 0.05}

@@ -14,10 +14,10 @@ from inerter.core import Device
 from inerter.exudyn.engine import installed
 from inerter.identify.between import about_samples, between, quintics
 from inerter.identify.channel import through_channel
+from inerter.identify.forgetting import Forgetting
 from inerter.identify.model import Model
 from inerter.identify.prediction import (
     begin,
-    bristle_reach,
     felt_beside,
     settled,
     with_friction_drift,
@@ -127,7 +127,7 @@ def _mujoco(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
 def _exudyn(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
     from inerter.exudyn.rig import simulate_along
 
-    parts, channels = _steps(device, run, bristle_reach(device))
+    parts, channels = _steps(device, run, Forgetting.of(device).reach)
     step, every = run.spacing / parts, parts if run.instants == 1 else 1
     found = simulate_along(device, step, *channels, state, every=every, motion=run.motion)
     return _at_samples(run, found, parts // every)

@@ -24,6 +24,7 @@ from inerter.identify.apart import Apart, Basis
 from inerter.identify.channel import LINEAR, clips, tone_follows
 from inerter.identify.channel_filter import Filter, slow_start, without_start
 from inerter.identify.force_parts import RUNAWAY
+from inerter.identify.forgetting import Forgetting
 from inerter.identify.in_proportion import (
     BY_SPEED,
     PLACES,
@@ -41,7 +42,7 @@ from inerter.identify.in_proportion import (
 )
 from inerter.identify.kept import Kept
 from inerter.identify.model import Model
-from inerter.identify.prediction import before_filter, beyond_limits, bristle_reach, moves_late
+from inerter.identify.prediction import before_filter, beyond_limits, moves_late
 from inerter.identify.runs import BenchRun
 from inerter.identify.smoothness import smoothness
 from inerter.identify.transient import (
@@ -78,6 +79,8 @@ _MOST = 2**25
 _WORTH_WHILE, _MOST_BASES = 5, 4
 # a filter that is taken out of the motion that the columns are of
 _FILTER = ("displacement_filter", "displacement_filter_order", "displacement_filter_bessel")
+# what holds no bristle
+_NEVER = Forgetting(0.0)
 # what is a linear filter of the force, and what says how long the time before the record shows
 _CHANNEL = (*LINEAR, *RELAXING, *_FILTER)
 # share of an inertance that it may lose with the speed at most; its floor is 0.01
@@ -91,11 +94,11 @@ class Columns:
         self.problem = problem
         self._kept: Kept[np.float64] = Kept(_MOST)
         self._bases: dict[Hashable, Basis] = {}
-        self._last_bent: tuple[float, list[tuple[Array, Array]]] = (0.0, [])
+        self._last_bent: tuple[Forgetting, list[tuple[Array, Array]]] = (_NEVER, [])
 
     def __getstate__(self) -> Mapping[str, Any]:
         """What another process is told: what is kept is soon worked out again."""
-        return {**self.__dict__, "_kept": Kept(_MOST), "_bases": {}, "_last_bent": (0.0, [])}
+        return {**self.__dict__, "_kept": Kept(_MOST), "_bases": {}, "_last_bent": (_NEVER, [])}
 
     def of(
         self,
@@ -282,19 +285,19 @@ class Columns:
     ) -> Array:
         """Minus coordinates' columns as they count, (m, n); tones held where none are given."""
         tones = tones or [None] * len(self.problem.runs)
-        apart = replace(unknown, reach=0.0)
+        apart = replace(unknown, forgets=_NEVER)
         # what a tone does changes with the model, and what a bristle or a limit does
-        if beyond or any(tones) or (unknown.reach and apart != _NOTHING):
+        if beyond or any(tones) or (unknown.forgets.reach and apart != _NOTHING):
             return self._worked_out(rows, unknown, tones, beyond)
         found = self._kept.all_found(
             column_keys(rows, _CHANNEL),
             lambda missing: self._worked_out([rows[i] for i in missing], apart, tones),
         )
-        if not unknown.reach:
+        if not unknown.forgets.reach:
             return found
         # but for one form in every run
         begin = 0
-        for run, (share, form) in zip(self.problem.runs, self._bent(unknown.reach), strict=True):
+        for run, (share, form) in zip(self.problem.runs, self._bent(unknown.forgets), strict=True):
             if share.size:
                 shown = _shown(rows, run)[:, : share.size]
                 found[:, begin : begin + form.size] += np.outer(shown @ share, form)
@@ -313,20 +316,21 @@ class Columns:
         ]
         return np.concatenate(self.problem.weighted(columns), axis=1)
 
-    def _bent(self, reach: float) -> list[tuple[Array, Array]]:
+    def _bent(self, forgets: Forgetting) -> list[tuple[Array, Array]]:
         """What tells of every run how a bristle was bent, and what that leaves as it counts."""
         known, found = self._last_bent
-        if known == reach:
+        if known == forgets:
             return found
         forms, shares = [], []
         for run, mask in zip(self.problem.runs, self.problem.masks, strict=True):
-            decay, share = bending(run.path, reach, mask if mask.any() else run.inner, run.first)
+            seen, path = mask if mask.any() else run.inner, forgets.path(run)
+            decay, share = bending(path, forgets.reach, seen, run.first)
             form = np.zeros(run.force.size)
             form[: decay.size] = decay
             forms.append(form)
             shares.append(share)
         found = list(zip(shares, self.problem.weighted(forms), strict=True))
-        self._last_bent = reach, found
+        self._last_bent = forgets, found
         return found
 
     def _by_first_force(
@@ -352,20 +356,20 @@ def _shown(rows: Rows, run: BenchRun, beyond: NDArray[np.bool_] | None = None) -
 class _Unknown:
     """What holds forces of the time before the record.
 
-    That is a low-pass, branches that relax [s] and a bristle that forgets along a path [m].
+    That is a low-pass, branches that relax [s] and a bristle that forgets.
     """
 
     low_pass: Filter | None
     times: tuple[float, ...]
-    reach: float
+    forgets: Forgetting
 
     @classmethod
     def of(cls, model: Model) -> _Unknown:
-        reach = bristle_reach(model.device())
-        return cls(slow_start(model.values), relaxing(model.values), reach)
+        forgets = Forgetting.of(model.device())
+        return cls(slow_start(model.values), relaxing(model.values), forgets)
 
 
-_NOTHING = _Unknown(None, (), 0.0)
+_NOTHING = _Unknown(None, (), _NEVER)
 
 
 def _settled(
@@ -377,7 +381,8 @@ def _settled(
 ) -> Array:
     """Columns (m, n) without what is read off the record, as a residual is there (`settled`)."""
     seen = mask if mask.any() else run.inner
-    shown = without_bending(run.path, unknown.reach, shown, seen, run.first)
+    path, reach = unknown.forgets.path(run), unknown.forgets.reach
+    shown = without_bending(path, reach, shown, seen, run.first)
     shown = without_relaxing(unknown.times, shown, run.spacing, seen, run.first, run.cutoff)
     if unknown.low_pass is not None:
         shown = without_start(shown, run.spacing, seen & run.inner, unknown.low_pass, run.first)

@@ -27,6 +27,7 @@ from inerter.identify.channel_filter import (
 )
 from inerter.identify.first_slip import flywheel_speed
 from inerter.identify.force_parts import RUNAWAY, is_sum, sharp_force, smooth_force, states_of
+from inerter.identify.forgetting import Forgetting, held
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
 from inerter.identify.transient import (
@@ -43,10 +44,6 @@ Array = NDArray[np.float64]
 _NO_LIMITS = (np.inf, -np.inf)
 # share of what the bristle holds from which on the first force tells the side of its free play
 _TELLING = 0.1
-# ways that renew contacts, along which it is forgotten what a rest of some seconds had made of
-# them: the logarithm of their age falls evenly over the first few. With 1 as with 2.5 seven drawn
-# devices are named alike; with 6 two of them are Coulomb friction
-_AGES = 2.5
 # a twist at the start is at most this many strokes of the run: more of it would be an oscillation
 # that nothing in the run excites, by which a shaft without stiffness carries any slow force
 _MOST_TWIST = 10.0
@@ -81,7 +78,7 @@ def first_state(
     if not device.friction_backlash:
         return state
     bent, side = _bent(device, float(np.atleast_1d(state)[0]))
-    told = min(1.0, abs(bent) / (_TELLING * _held(device)))
+    told = min(1.0, abs(bent) / (_TELLING * held(device)))
     found = bent + device.friction_backlash * (told * side + (1.0 - told) * place)
     return np.array([found, *np.atleast_1d(state)[1:]]) if device.nstate > 1 else found
 
@@ -106,30 +103,6 @@ def _bent(device: Device, state: float) -> tuple[float, float]:
     """Deflection of the bristle [m] behind its free play, and its side, -1, 0 or 1."""
     half = device.friction_backlash
     return state - min(max(state, -half), half), float((state > 0) - (state < 0))
-
-
-def _held(device: Device) -> float:
-    """Deflection of the bristle [m] at which it slides; for Bouc-Wen without one, a play."""
-    if device.friction != "bouc_wen":
-        return device.coulomb_force / device.bristle_stiffness
-    narrowing = device.bw_beta + device.bw_gamma
-    if narrowing <= 0:
-        return device.friction_backlash
-    return float((device.bw_alpha / narrowing) ** (1 / device.bw_exponent))
-
-
-def bristle_reach(device: Device) -> float:
-    """Path [m] along which a bristle forgets how it was bent; 0 without one bristle alone.
-
-    Behind a larger play it begins somewhere in that, which says how it was bent. Contacts that age
-    forget so how long they had been at rest, which no force at rest tells.
-    """
-    if device.friction == "rate_state":
-        return _AGES * device.age_distance
-    if device.friction not in ("dahl", "lugre", "bouc_wen"):
-        return 0.0
-    reach = _held(device)
-    return reach if device.friction_backlash <= reach else 0.0
 
 
 def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
@@ -352,7 +325,8 @@ def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_
         begin = run.first if device.leak_damping else 0
         bare = without_transient(device, residual[begin:], run.spacing, mask[begin:], speed)
         residual = np.concatenate([residual[:begin], bare])
-    residual = without_bending(run.path, bristle_reach(device), residual, mask, run.first)
+    forgets = Forgetting.of(device)
+    residual = without_bending(forgets.path(run), forgets.reach, residual, mask, run.first)
     residual = without_relaxing(
         relaxing(values), residual, run.spacing, mask, run.first, run.cutoff
     )
