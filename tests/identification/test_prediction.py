@@ -252,8 +252,32 @@ def test_what_is_seen_of_a_beginning_alone_tells_how_a_bristle_was_bent() -> Non
     assert np.max(np.abs(left[TIME >= 0.1])) < 0.1
 
 
+def test_what_is_taken_out_of_a_beginning_follows_the_length_of_its_decay() -> None:
+    """At a jump of it the search for a shaft, a branch or a bristle would end."""
+    seen = TIME >= 0.1
+    residual = np.random.default_rng(3).standard_normal(TIME.size)
+    residual[~seen] += 50.0
+
+    def left(time: float) -> np.ndarray:
+        # b lambda^2 + c_s lambda + k_s = 0 decays in 2 b / c_s
+        shaft = Device(inertance=40.0, series_stiffness=1e6, series_damping=80.0 / time)
+        return np.array(
+            [
+                without_transient(shaft, residual, 1e-3, seen),
+                without_relaxing([time], residual, 1e-3, seen),
+                without_relaxing([time], residual, 1e-3, seen, cutoff=5.0),
+                without_bending(0.02 * TIME, 0.02 * time, residual, seen),
+            ]
+        )[:, seen]
+
+    # about every whole number of samples
+    for time in 1e-3 * np.arange(10, 300):
+        change = left(time * (1.0 + 1e-6)) - left(time * (1.0 - 1e-6))
+        assert np.max(np.abs(change)) < 2e-3
+
+
 @pytest.mark.parametrize(
-    "law, own",
+    ("law", "own"),
     [
         ("dahl", {"coulomb_force": 20.0, "presliding": 5e-3}),
         ("lugre", {"coulomb_force": 20.0, "presliding": 5e-3}),

@@ -96,6 +96,14 @@ def _level_of(model: Model, sizes: Scales) -> float:
     return model.values.get("coulomb_force") or FRICTION_SHARE * sizes.force
 
 
+def _load(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """Friction of the load: without another law it reads the width of sign(v)."""
+    for each in _term(effect, model, sizes):
+        alone = model.friction == "none"
+        starts = [start.adding(None, **width(start)) if alone else start for start in each.starts]
+        yield replace(each, starts=tuple(starts))
+
+
 def _law(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     """Every friction law of an effect that can take the present one's place."""
     for law in FRICTION.values():
@@ -397,6 +405,7 @@ _CLUTCHES = (0.4, 0.8, 1.3)
 _SPECIAL: dict[str, Build] = {
     "leak": _leaking,
     "viscous_friction": _viscous,
+    "load_dependent_friction": _load,
     "sensor_filter": _filter,
     "grip_mass": _grip,
     "damper_elasticity": _behind_a_spring,

@@ -92,8 +92,8 @@ class Search:
     Effects `excluded`, for good `never`, are not added, those `kept` stay; one that is added takes
     at least the share `least` of the error away.
     A `witness` is asked whether a tone is of the motion, which may be known to be `one_tone`.
-    It `draws` curves along the stroke, or none; it may `begin` with more than the baseline. When
-    its `time` is over nothing is added.
+    It `draws` curves along the stroke, or none; it may `begin` with more than the baseline. Nothing
+    is added to a model that has `most_complex` coordinates or more, nor when its `time` is over.
     """
 
     runs: Sequence[BenchRun]
@@ -108,6 +108,7 @@ class Search:
     witness: Witness | None = None
     one_tone: bool = False
     draws: bool = True
+    most_complex: float = np.inf
     begin: Model | None = None
     time: TimeLimit = field(default_factory=TimeLimit)
 
@@ -202,6 +203,8 @@ class Search:
         """Effects added one after another."""
         with suppress(OverTimeError):
             while len(self.found) < most and not self.time.is_over():
+                if current.complexity >= self.most_complex:
+                    break
                 chosen = self._best_step(current) or self._two_steps(current)
                 if chosen is None:
                     break

@@ -281,6 +281,8 @@ def _items(values: Mapping[str, _Stated]) -> tuple[tuple[str, _Stated], ...]:
 
 
 def _useful(free: tuple[str, ...], friction: str) -> tuple[str, ...]:
-    # a law that reads the width of sign(v) has no bristle that begins in a play
-    unread = "friction_place" if FRICTION[friction].smoothed else "transition_velocity"
+    # a law that reads the width of sign(v) has no bristle that begins in a play; that of the load
+    # reads it where there is no other
+    alone = friction == "none" and "load_friction" in free
+    unread = "friction_place" if FRICTION[friction].smoothed or alone else "transition_velocity"
     return tuple(name for name in free if name != unread)

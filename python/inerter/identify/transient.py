@@ -24,6 +24,9 @@ MOST_SPEEDS = 5.0
 _DECAYED = 60.0
 # lengths of a bristle's decay along which it is followed
 _FORGOTTEN = 15.0
+# lengths of a decay after which its rest tells nothing of its beginning (twice as many: nothing at
+# all), and how far that goes where it tells itself
+_TOLD, _BEGINNING = 2.0, 4.0
 # samples of the quickest decay that is one, and its length in periods of a low-pass: one of more is
 # hardly changed by that
 _FEWEST, _PERIODS = 3, 0.5
@@ -60,9 +63,9 @@ def without_transient(
     if np.count_nonzero(mask) < 4 or not np.isfinite(roots).all():
         return residual
     # what is below rounding by then has no share
-    slowest = float(np.max(roots.real)) * spacing
+    slowest, weights = float(np.max(roots.real)) * spacing, mask.astype(np.float64)
     if slowest < 0:
-        mask = _with_beginning(mask, 0, int(-1.0 / slowest) + 1)
+        weights = _with_beginning(mask, -slowest * np.arange(mask.size, dtype=np.float64))
     count = residual.size if slowest >= 0 else min(residual.size, int(_DECAYED / -slowest) + 2)
     with np.errstate(under="ignore"):
         if abs(roots[0].imag) > 0:
@@ -71,7 +74,7 @@ def without_transient(
         else:
             basis = np.array([_decay(root * spacing, count).real for root in roots])
     return _without(
-        basis, residual, mask, MOST_SPEEDS * speed * (math.sqrt(b * stiffness) + damping)
+        basis, residual, weights, MOST_SPEEDS * speed * (math.sqrt(b * stiffness) + damping)
     )
 
 
@@ -92,18 +95,17 @@ def without_relaxing(
 
     A branch that was bent before goes on to relax, exp(-t / time) from the sample `first` on; the
     share of the masked samples that has this form is taken out, as above. Not of branches so quick
-    that a low-pass of this `cutoff` [Hz] makes another form of it.
+    that a low-pass of this `cutoff` [Hz] makes another form of it, and steadily less towards them.
     """
-    if not times:
-        return residual
     shortest = max(_PERIODS / cutoff, _FEWEST * spacing)
     times = [time for time in times if time > shortest]
     count = min(residual.shape[-1] - first, int(_DECAYED * max(times, default=0.0) / spacing) + 1)
     if not times or np.count_nonzero(mask) < 4 or count < 1:
         return residual
     basis, share = _relaxing(tuple(times), spacing, first, first + count, mask.tobytes())
+    slow = np.clip(2.0 * (np.array(times) / shortest - 1.0), 0.0, 1.0)
     rest = residual.copy()
-    rest[..., : first + count] -= (residual[..., : first + count] @ share.T) @ basis
+    rest[..., : first + count] -= slow * (residual[..., : first + count] @ share.T) @ basis
     return rest
 
 
@@ -114,24 +116,30 @@ def _relaxing(
 ) -> tuple[Array, Array]:
     """Decays (m, count) of branches, and what tells their sizes of a residual's beginning."""
     mask = np.frombuffer(masked, dtype=np.bool_)
-    mask = _with_beginning(mask, first, int(max(times) / spacing) + 1)[:count]
+    decayed = spacing / max(times) * np.maximum(np.arange(mask.size) - first, 0)
+    weights = _with_beginning(mask, decayed, first)[:count]
     basis = np.ones((len(times), count))
     with np.errstate(under="ignore"):
         for row, time in zip(basis, times, strict=True):
             row[first:] = _decay(-spacing / time, count - first).real
-    return basis, _share(basis, mask)
+    return basis, _share(basis, weights)
 
 
-def _with_beginning(mask: NDArray[np.bool_], first: int, count: int) -> NDArray[np.bool_]:
-    """Masked samples, and those from the `first` on where of so many none is masked.
+def _with_beginning(mask: NDArray[np.bool_], decayed: Array, first: int = 0) -> Array:
+    """Weights of masked samples, and of those from the `first` on where none of these is near it.
 
-    What is left out of a fit has a beginning of its own, which nothing else tells.
+    decayed: lengths of a decay that have gone by at each sample, (n,). What is left out of a fit
+    has a beginning of its own, which nothing else tells. Its weight follows the length steadily: a
+    jump of it would be the end of a search.
     """
-    if mask[first : first + count].any():
-        return mask
-    mask = mask.copy()
-    mask[first : first + 3 * count] = True
-    return mask
+    weights = mask.astype(np.float64)
+    seen = np.flatnonzero(mask[first:])
+    nearest = float(decayed[first + seen[0]]) if seen.size else np.inf
+    share = min(max((nearest - _TOLD) / _TOLD, 0.0), 1.0)
+    if share:
+        own = share * np.clip(_BEGINNING - decayed[first:], 0.0, 1.0)
+        weights[first:] = np.maximum(weights[first:], own)
+    return weights
 
 
 def without_bending(
@@ -158,18 +166,17 @@ def bending(
     Both (k,) with k = 0 where there is none.
     """
     count = int(np.searchsorted(path, _FORGOTTEN * reach)) if reach > 0 else 0
-    if count:
-        mask = _with_beginning(mask, first, int(np.searchsorted(path, reach)) - first)
-    if np.count_nonzero(mask[:count]) < 4:
+    weights = _with_beginning(mask, path / reach, first)[:count] if count else np.zeros(0)
+    if np.count_nonzero(weights) < 4:
         return np.zeros(0), np.zeros(0)
     with np.errstate(under="ignore"):
         decay = np.exp(-path[:count] / reach)
-    seen = decay * mask[:count]
+    seen = decay * weights
     return decay, seen / (seen @ decay + TIMID)
 
 
-def _without(basis: Array, residual: Array, mask: NDArray[np.bool_], most: float = np.inf) -> Array:
-    """A residual (n,) without the share of its masked samples that a basis (m, k <= n) has.
+def _without(basis: Array, residual: Array, weights: Array, most: float = np.inf) -> Array:
+    """A residual (n,) without the share of its weighted samples that a basis (m, k <= n) has.
 
     Of that `most` [N] at most, where the basis is largest.
     """
@@ -177,16 +184,16 @@ def _without(basis: Array, residual: Array, mask: NDArray[np.bool_], most: float
     if not np.isfinite(basis).all():
         return residual
     count = basis.shape[1]
-    rest, form = residual.copy(), (_share(basis, mask[:count]) @ residual[:count]) @ basis
+    rest, form = residual.copy(), (_share(basis, weights[:count]) @ residual[:count]) @ basis
     largest = float(np.max(np.abs(form)))
     rest[:count] -= form if largest <= most else most / largest * form
     return rest
 
 
-def _share(basis: Array, mask: NDArray[np.bool_]) -> Array:
-    """What tells the shares of a basis (m, k) of masked values (k,), (m, k)."""
+def _share(basis: Array, weights: Array) -> Array:
+    """What tells the shares of a basis (m, k) of weighted values (k,), (m, k)."""
     # normal equations do: what holds the size back keeps them well conditioned
-    seen = basis * mask
+    seen = basis * weights
     found = np.linalg.solve(seen @ basis.T + TIMID * np.eye(len(basis)), seen)
     return np.asarray(found, dtype=np.float64)
 

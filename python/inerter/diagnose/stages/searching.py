@@ -224,6 +224,8 @@ def _behind_low_pass(
         return search, final
     start.given.progress("one sine: searching once more, from a low-pass of the force on")
     again = search_in(start, band)
+    # of more it would have to tell more than by chance, and each step takes longer
+    again.most_complex = final.complexity + 1
     begins, models = _LATE / scales.frequency, [start.baseline]
     models += [
         m for c in candidates(start.baseline, scales) if c.effect == _JUMPS for m in c.starts
@@ -231,6 +233,7 @@ def _behind_low_pass(
     fits = parallel(again.trials.fit, [each for m in models for each in filters(m, begins)])
     begin = min(fits, key=lambda fit: fit.rmse(again.problem.masks))
     other = again.run(begin.model, until="backlash")
+    again.most_complex = np.inf
     late = has_filter(other.model) or "delay" in other.model.free
     if "backlash" in other.model.free or not again.may_be(other.model):
         return search, final
