@@ -20,6 +20,7 @@ from inerter.records import Record
 from inerter.records.preparation import prepare
 from inerter.reference import ReferenceDevice, response
 from inerter.reference.motion import Motion
+from scipy.interpolate import CubicSpline
 
 TONES = ((0.9, 0.02, 0.3), (1.9, 0.008, 1.1), (3.7, 0.003, 2.0))
 
@@ -88,6 +89,19 @@ def test_an_inertance_alone_does_not_tell_a_leak_from_a_low_pass() -> None:
     assert leak.parameters["leak_damping"].value == pytest.approx(2500.0, rel=0.01)
     assert f"a low-pass of the force, such as one of order 1 at {corner:.3g} Hz" in found.verdict
     assert "another record would (state the filter" in found.verdict
+
+
+def test_nor_behind_a_channel_that_is_late() -> None:
+    """What is late beside a low-pass of the first order is so beside a leak."""
+    records = [
+        replace(each, force=CubicSpline(each.time, each.force)(each.time - 6e-3))
+        for each in recorded(inertance=120.0, leak_damping=5000.0)
+    ]
+    found = diagnose_bench(records)
+    (first,) = (each for each in found.findings if "leak" in (each.effect, *each.members))
+    assert {"leak", "sensor_filter"} <= {first.effect, *first.members}, found.verdict
+    assert first.parameters["leak_damping"].value == pytest.approx(5000.0, rel=0.02)
+    assert found.parameters["delay"].value == pytest.approx(6e-3, rel=0.05)
 
 
 @pytest.mark.long

@@ -83,11 +83,16 @@ def _low_passes(model: Model) -> list[Model]:
     if "leak_corner" not in model.free or "leak_quadratic_damping" in model.values:
         return []
     late = 0.5 / math.pi / model.values["leak_corner"]
-    return [c.starts[0] for c in filters(model.without(_LEAK), late)]
+    found = [c.starts[0] for c in filters(model.without(_LEAK), late)]
+    if "delay" in model.free:
+        # another channel may be late as well
+        alone = [c.starts[0] for c in filters(model.without((*_LEAK, "delay")), late)]
+        found += [each.adding(None, delay=model.delay) for each in alone]
+    return found
 
 
 def _leaks(model: Model, search: Search) -> list[Model]:
-    """A leak, and one behind a spring, in the place of a low-pass of the force."""
+    """A leak, one behind a spring, and one beside a delay, in the place of a low-pass."""
     cutoff = model.values.get("force_filter", math.inf)
     within = cutoff < search.problem.scales.highest_frequency
     if not within or model.has_series or not model.values.get("inertance"):
@@ -99,7 +104,11 @@ def _leaks(model: Model, search: Search) -> list[Model]:
     oil = bare.adding(
         None, leak_corner=0.5 * cutoff / _RATIO, series_frequency=cutoff, series_loss=_LOSS
     )
-    return [oil] if leak is None else [leak, oil]
+    found = [oil] if leak is None else [leak, oil]
+    own = late - model.values.get("delay", 0.0)
+    if "delay" in model.free and own > 0:
+        found.append(model.without(_FILTER).adding(None, leak_corner=0.5 / math.pi / own))
+    return found
 
 
 def _as_good(fits: Sequence[Fit], search: Search, fit: Fit) -> Fit | None:
