@@ -7,6 +7,7 @@ rich law stands in for a simple one with, say, viscous friction.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from copy import copy
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,13 +46,46 @@ if TYPE_CHECKING:
 def exchanged(search: Search, current: Scored) -> Scored:
     """A model that says about as much with fewer parameters, as long as there is one."""
     for other in (
-        other_side, other_filter, leak_for_low_pass, _dampers_that_lag, _straight_bend,
-        _one_friction, blurred_bristle, _plainer_law, _spring_beside, plain_part, _weight,
-        _one_cause,
+        _shaft_alone, other_side, other_filter, leak_for_low_pass, _dampers_that_lag,
+        _straight_bend, _one_friction, blurred_bristle, _plainer_law, _spring_beside, plain_part,
+        _weight, _one_cause,
     ):  # fmt: skip
         if found := other(search, current):
             return found if other is _one_cause else exchanged(search, found)
     return current
+
+
+def _shaft_alone(search: Search, current: Scored) -> Scored | None:
+    """A shaft without a mass before it, where by its own weights it does as well.
+
+    Errors count by the noise of the motion that a shaft passes on: near its resonance the shaft
+    that is there misses more for that alone, and one behind a mass, whose resonance is another,
+    would win.
+    """
+    own = {*EFFECTS["series_elasticity"].coordinates, "grip_mass"}
+    if not own <= set(current.model.free):
+        return None
+    mass, bare = current.model.values["grip_mass"], current.model.without(tuple(own))
+    bare = bare.holding(inertance=current.model.values["inertance"] + mass)
+    trials = [
+        each
+        for each in candidates(bare, search.problem.scales)
+        if each.effect == "series_elasticity" and each.law is None
+    ]
+    fits = [search.trials.fit(each) for each in trials]
+    alone = min(fits, key=lambda fit: fit.rmse(search.problem.masks), default=None)
+    if alone is None or not search.may_be(alone.model):
+        return None
+    weighed = copy(search)
+    weighed.weigh_for(alone.model)
+    rich, plain = (
+        weighed.score("grip_mass", None, weighed.problem.fit(model))
+        for model in (current.model, alone.model)
+    )
+    if weighed.better(plain, rich):
+        return None
+    search.weigh_for(plain.model)
+    return search.score("exchange", None, search.problem.fit(plain.model))
 
 
 def other_side(search: Search, current: Scored) -> Scored | None:

@@ -129,7 +129,7 @@ class Search:
         self._folds = self._problems(self.split.folds)
         self._spread = self._problems(spread_folds(self.split.fit))
 
-    def _weigh_for(self, model: Model) -> None:
+    def weigh_for(self, model: Model) -> None:
         """Let errors count by what a model's shaft, if it has one, makes of the motion's noise."""
         if model.shaft is None:
             return
@@ -162,7 +162,7 @@ class Search:
         `most` effects are added at most; with the effect `until` it ends, and nothing is pruned.
         """
         start = start or self.begin or self.baseline
-        self._weigh_for(start)
+        self.weigh_for(start)
         if any(is_local(effect) for effect, _ in effects_of(start, self.baseline)):
             self._folds = self._spread
         current = self.score("baseline", None, self.problem.fit(start))
@@ -220,7 +220,7 @@ class Search:
 
     def next_effect(self, model: Model) -> str | None:
         """The effect that would be added to a model in one more step, fitted to all fit data."""
-        self._weigh_for(model)
+        self.weigh_for(model)
         if any(is_local(effect) for effect, _ in effects_of(model, self.baseline)):
             self._folds = self._spread
         with suppress(OverTimeError):
@@ -307,7 +307,7 @@ class Search:
             return None
         chosen = self._plainest(good)
         if is_shaft(chosen.effect):
-            self._weigh_for(chosen.model)
+            self.weigh_for(chosen.model)
             return self.score(chosen.effect, None, self.problem.fit(chosen.model))
         if is_local(chosen.effect):
             self._folds = folds
@@ -381,7 +381,9 @@ class Search:
 
     def _plainest(self, good: Sequence[Scored]) -> Scored:
         """The best of some models, or the plainest of those that are about as good."""
-        shaft = next((s for s in good if is_shaft(s.effect)), good[0])
+        shafts = [s for s in good if is_shaft(s.effect)]
+        # a richer one passes less noise of the motion, and would win by its own weights
+        shaft = min(shafts, key=lambda s: s.complexity, default=good[0])
         counted = self._weighed_for(shaft, good)
         best = min(counted, key=lambda s: s.squares.sum())
         pairs = zip(good, counted, strict=True)

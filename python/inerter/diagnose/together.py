@@ -17,7 +17,7 @@ from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.scales import Scales
 from inerter.diagnose import bent_damping
 from inerter.diagnose.candidate import Candidate
-from inerter.diagnose.composition import is_distinct
+from inerter.diagnose.composition import effects_of, is_distinct
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.instead import is_near_noise
 from inerter.diagnose.trials import FAR
@@ -43,10 +43,18 @@ def whole_damper(search: Search, current: Scored) -> Scored | None:
 
 
 def whole_strut(search: Search, current: Scored) -> Scored | None:
-    """A damper that bends and rubs behind a spring, where that predicts much better."""
+    """A damper that bends and rubs behind a spring, where that predicts much better.
+
+    All of it has to be there: what lacks friction, say, is something else.
+    """
     starts = bent_damping.struts(current.model, search.problem.scales)
     found = _much_better(search, current, bent_damping.EFFECT, starts)
-    return found if found and is_distinct(_LAGS, found.fit, search.baseline) else None
+    if found is None:
+        return None
+    known, named = (dict(effects_of(s.model, search.baseline)) for s in (current, found))
+    added = [_LAGS, *(name for name in named if name not in known)]
+    there = all(is_distinct(name, found.fit, search.baseline) for name in added)
+    return found if there else None
 
 
 def whole_mount(search: Search, current: Scored) -> Scored | None:

@@ -323,7 +323,9 @@ def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_
         speed = float(np.max(np.abs(run.velocity)))
         # behind a leak it dies away too soon to be counted from elsewhere than where it begins
         begin = run.first if device.leak_damping else 0
-        bare = without_transient(device, residual[begin:], run.spacing, mask[begin:], speed)
+        bare = without_transient(
+            device, residual[begin:], run.spacing, mask[begin:], speed, run.first - begin
+        )
         residual = np.concatenate([residual[:begin], bare])
     forgets = Forgetting.of(device)
     residual = without_bending(forgets.path(run), forgets.reach, residual, mask, run.first)

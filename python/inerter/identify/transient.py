@@ -43,7 +43,12 @@ def swings_freely(device: Device) -> bool:
 
 
 def without_transient(
-    device: Device, residual: Array, spacing: float, mask: NDArray[np.bool_], speed: float = np.inf
+    device: Device,
+    residual: Array,
+    spacing: float,
+    mask: NDArray[np.bool_],
+    speed: float = np.inf,
+    first: int = 0,
 ) -> Array:
     """A residual without the decay of the series element's unknown first state, shape (n,).
 
@@ -52,7 +57,7 @@ def without_transient(
     lambda = -(c_l + c_w) / b, behind both see `_roots_of`; the share of the
     masked samples that has this form is taken out. Its size at the beginning is held near what the
     residual is large, for its faint rest tells nothing of it: where nothing is masked before it is
-    that faint, the beginning itself tells it. Nor is
+    that faint, the beginning from the sample `first` on tells it itself. Nor is
     it more than a flywheel carries that turned some times faster than the record's largest `speed`
     [m/s]: hardly any inertance has no such oscillation.
     """
@@ -65,7 +70,7 @@ def without_transient(
     # what is below rounding by then has no share
     slowest, weights = float(np.max(roots.real)) * spacing, mask.astype(np.float64)
     if slowest < 0:
-        weights = _with_beginning(mask, -slowest * np.arange(mask.size, dtype=np.float64))
+        weights = _with_beginning(mask, -slowest * _since(first, mask.size), first)
     count = residual.size if slowest >= 0 else min(residual.size, int(_DECAYED / -slowest) + 2)
     with np.errstate(under="ignore"):
         if abs(roots[0].imag) > 0:
@@ -116,13 +121,18 @@ def _relaxing(
 ) -> tuple[Array, Array]:
     """Decays (m, count) of branches, and what tells their sizes of a residual's beginning."""
     mask = np.frombuffer(masked, dtype=np.bool_)
-    decayed = spacing / max(times) * np.maximum(np.arange(mask.size) - first, 0)
+    decayed = spacing / max(times) * _since(first, mask.size)
     weights = _with_beginning(mask, decayed, first)[:count]
     basis = np.ones((len(times), count))
     with np.errstate(under="ignore"):
         for row, time in zip(basis, times, strict=True):
             row[first:] = _decay(-spacing / time, count - first).real
     return basis, _share(basis, weights)
+
+
+def _since(first: int, count: int) -> Array:
+    """Samples since the `first`, (count,); 0 before."""
+    return np.maximum(np.arange(count, dtype=np.float64) - first, 0.0)
 
 
 def _with_beginning(mask: NDArray[np.bool_], decayed: Array, first: int = 0) -> Array:
