@@ -208,6 +208,18 @@ def test_a_device_without_friction_states_no_width_of_its_sign() -> None:
     assert bare.adding("coulomb", coulomb_force=5.0).stated()["transition_velocity"] == 1e-3
 
 
+def test_friction_of_the_load_reads_the_width_of_a_jump_where_no_law_does() -> None:
+    bare = replace(BASELINE, values={"inertance": 80.0, "transition_velocity": 1e-3})
+    dahl = bare.adding("dahl", coulomb_force=20.0, presliding=1e-4)
+    for model, reads in ((bare, True), (dahl, False)):
+        (load,) = (c for c in candidates(model, SCALES) if c.effect == "load_dependent_friction")
+        for start in load.starts:
+            assert ("transition_velocity" in start.free) == reads
+            # it is part of no effect, and goes with what reads it
+            assert start.complexity == model.complexity + 1
+            assert "transition_velocity" not in start.without(("load_friction",)).free
+
+
 @pytest.mark.parametrize(
     ("stated", "distance"),
     [
