@@ -29,6 +29,7 @@ from inerter.diagnose.plainer import (
     as_plain_part,
     as_spring,
     as_weight,
+    has_plain_shaft,
     swings_on,
     with_own_spring,
 )
@@ -62,10 +63,10 @@ def _shaft_alone(search: Search, current: Scored) -> Scored | None:
     that is there misses more for that alone, and one behind a mass, whose resonance is another,
     would win.
     """
-    own = {*EFFECTS["series_elasticity"].coordinates, "grip_mass"}
-    if not own <= set(current.model.free):
+    if "grip_mass" not in current.model.free or not has_plain_shaft(current.model):
         return None
-    mass, bare = current.model.values["grip_mass"], current.model.without(tuple(own))
+    own = (*EFFECTS["series_elasticity"].coordinates, "grip_mass")
+    mass, bare = current.model.values["grip_mass"], current.model.without(own)
     bare = bare.holding(inertance=current.model.values["inertance"] + mass)
     trials = [
         each

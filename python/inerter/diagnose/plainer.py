@@ -36,7 +36,7 @@ _PLACES = 41
 _EXPONENT = 1.3
 
 
-def _has_plain_shaft(model: Model) -> bool:
+def has_plain_shaft(model: Model) -> bool:
     """Whether a shaft without play or clutch is searched for."""
     return set(_SHAFT) <= set(model.free) and PLAYS.isdisjoint(model.values)
 
@@ -46,7 +46,7 @@ def swings_on(model: Model, longest: float, frequency: float) -> bool:
 
     How it began is free: it stands for any slow sine, and only one that dies away is told from it.
     """
-    if not _has_plain_shaft(model):
+    if not has_plain_shaft(model):
         return False
     swings = model.values["series_frequency"]
     lasting = 2 * np.pi * swings * model.values["series_loss"] * longest < 1.0
@@ -104,7 +104,7 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
     force, and a shaft on which little turns or so softly that it does not follow the motion.
     """
     found = []
-    if "inertance" in model.free and _has_plain_shaft(model):
+    if "inertance" in model.free and has_plain_shaft(model):
         rigid, swings = model.without(_SHAFT), model.values["series_frequency"]
         found.append(rigid)
         if swings < frequency:
