@@ -16,10 +16,10 @@ enum { LIVE_LIST = INERTER_NPARAMETER + 1, NLIVE = LIVE_LIST + INERTER_NLIST };
 
 // a parameter, or a list, that a numeric of the model holds (live.h)
 typedef struct LiveParameter_ {
-  int parameter;  // which
-  int address;    // place in numeric_data
-  int count;      // numbers there
-  mjtNum value;   // last value seen; of several, a sum that tells them apart
+  int parameter;   // which
+  int address;     // place in numeric_data
+  int count;       // numbers there
+  uint64_t print;  // of the numbers last seen
 } LiveParameter;
 
 // What an mjData keeps of an instance between the callbacks of one step. Everything that has to
@@ -67,9 +67,11 @@ typedef struct Instance_ {
   int complained;          // reasons (Complaint) for which it has said once what is wrong
   int integrator;          // under which (+ 1), and with which step, its stiffness was looked at
   mjtNum timestep;
-  int stiff_bristle;  // 1: a bristle is too stiff to be taken at the start of the step
-  int64_t solves;     // how often its force was solved for, how often that stopped at its bound,
-  int64_t stops;      // and how often the engine's solver left it a misfit
+  mjtNum light;         // mobility in the initial configuration, and the share of what a step can
+  mjtNum bristle_rate;  // bear that a bristle is per mobility (watch_stiffness)
+  int stiff_bristle;    // 1: a bristle is too stiff to be taken at the start of the step
+  int64_t solves;       // how often its force was solved for, how often that stopped at its bound,
+  int64_t stops;        // and how often the engine's solver left it a misfit
   int64_t misfits;
 } Instance;
 

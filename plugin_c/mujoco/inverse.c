@@ -11,6 +11,7 @@
 #include "mujoco/metric.h"
 #include "mujoco/monotone.h"
 #include "mujoco/solution.h"
+#include "mujoco/watch.h"
 
 // one device now, without the trace that an evaluation leaves in its instance
 typedef struct Now_ {
@@ -42,6 +43,7 @@ static int look(const mjModel* m, const mjData* d, int instance, Now* now,
   int nstate = inerter_nstate(&self->device);
   mju_copy(self->state, d->act + (nstate ? instance_act(m, self) : 0), nstate);
   self->disabled = instance_disabled(m, self);
+  watch_resolution(m, d, self);
   now->asleep = instance_asleep(m, d, self);
   return 0;
 }

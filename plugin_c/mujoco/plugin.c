@@ -254,6 +254,7 @@ static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   if (!instance_sees_falling_asleep(m, d)) {
     mju_copy(self->state, d->act + (nstate ? instance_act(m, self) : 0), nstate);
   }
+  watch_resolution(m, d, self);
   self->solved = coupled_needed(m, self);
   if (self->solved) {
     self->bias = instance_bias_acceleration(m, d, self);

@@ -213,7 +213,8 @@ void watch_stiffness(const mjModel* m, Instance* self) {
   double wheel = series ? 1 / p->inertance : light;
   double bristle_damping, bristle = inerter_bristle(p, &bristle_damping);
   double h = m->opt.timestep;
-  self->stiff_bristle = h * (bristle_damping + h * bristle) * light > kResolvedBristle;
+  self->light = light;
+  self->bristle_rate = h * (bristle_damping + h * bristle);
   double gas = p->gas_pressure > 0
                    ? p->gas_exponent * p->gas_pressure * p->gas_area * p->gas_area / p->gas_volume
                    : 0;
@@ -234,6 +235,12 @@ void watch_stiffness(const mjModel* m, Instance* self) {
   double rise, over_place = inerter_map_steepest(p, &rise);
   consider(&fastest, sqrt(over_place * light), swing, "force_map along the stroke", tendon);
   consider(&fastest, sqrt(gas * wheel), swing, "the gas spring", "");
+  // Euler takes the damping of a tendon at the start of a step, and that of a joint as told
+  int tendon_damps = m->actuator_trntype[self->actuator] == mjTRN_TENDON;
+  if (m->opt.integrator == mjINT_EULER && self->native &&
+      (tendon_damps || m->opt.disableflags & mjDSBL_EULERDAMP)) {
+    consider(&fastest, self->viscous * light, 2 / h, "viscous", implicit);
+  }
   if (stages) {
     double both = light + wheel;
     if (p->damper_stiffness > 0) {
@@ -288,13 +295,29 @@ void watch_stiffness(const mjModel* m, Instance* self) {
   }
 }
 
+void watch_resolution(const mjModel* m, const mjData* d, Instance* self) {
+  mjtNum light = self->light;
+  if (m->actuator_trntype[self->actuator] == mjTRN_TENDON && self->bristle_rate > 0) {
+    // how easily the terminals give way changes with the direction of the tendon
+    int row = m->actuator_outadr[self->actuator];
+    int start = d->moment_rowadr[row], end = start + d->moment_rownnz[row];
+    mjtNum now = 0;
+    for (int k = start; k < end; k++) {
+      mjtNum moment = d->actuator_moment[k];
+      now += moment * moment * m->dof_invweight0[d->moment_colind[k]];
+    }
+    light = mjMAX(light, now / (1 + now * m->actuator_armature[self->actuator]));
+  }
+  self->stiff_bristle = self->bristle_rate * light > kResolvedBristle;
+}
+
 //------------------------------ sites -------------------------------------------------------------
 
 void watch_sites(const mjModel* m, const mjData* d, Instance* self) {
   int tendon = m->actuator_trnid[2 * self->actuator];
   if (self->complained & COMPLAINT_SITES || m->actuator_trntype[self->actuator] != mjTRN_TENDON ||
       m->wrap_type[m->tendon_adr[tendon]] == mjWRAP_JOINT ||
-      d->ten_length[tendon] > 1e-6 * m->stat.meansize) {
+      !(d->ten_length[tendon] <= 1e-6 * m->stat.meansize)) {
     return;
   }
   instance_complain(

@@ -21,8 +21,11 @@ void watch_validity(const mjModel* m, Instance* self, const mjtNum* state);
 
 // Say what is too stiff for the integrator and the timestep, whenever these are new: what acts at
 // the start of a step or within stages, and is not resolved by them. Tells too whether a bristle
-// is.
+// would be.
 void watch_stiffness(const mjModel* m, Instance* self);
+
+// Tell whether a bristle is too stiff for a step in the present configuration.
+void watch_resolution(const mjModel* m, const mjData* d, Instance* self);
 
 // Say that the sites of a tendon meet: there is no direction then.
 void watch_sites(const mjModel* m, const mjData* d, Instance* self);

@@ -156,6 +156,36 @@ def test_an_inertance_on_a_light_carriage_counts_as_its_mass(
     assert "too stiff" not in said(capfd)
 
 
+@pytest.mark.parametrize(
+    ("integrator", "where", "flag", "most"),
+    [
+        # the engine takes the damping of a tendon at the start of a step: h c / m < 2
+        ("Euler", "tendon", "", 500.0),
+        ("Euler", "joint", "", np.inf),
+        ("Euler", "joint", '<flag eulerdamp="disable"/>', 500.0),
+        ("implicitfast", "tendon", "", np.inf),
+        ("discrete", "tendon", "", np.inf),
+    ],
+)
+def test_damping_that_a_step_does_not_resolve_is_said(
+    capfd: pytest.CaptureFixture, integrator: str, where: str, flag: str, most: float
+) -> None:
+    """On the engine's own damping of a slide of 1 kg, step of 4 ms."""
+    for damping in (0.95 * 500.0, 1.1 * 500.0):
+        model = mujoco.MjModel.from_xml_string(
+            f"""<mujoco><extension><plugin plugin="inerter.device"/></extension>
+            <option integrator="{integrator}" timestep="4e-3" gravity="0 0 0">{flag}</option>
+            <worldbody><body><joint name="j" type="slide"/>
+            <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody>
+            <tendon><fixed name="t"><joint joint="j" coef="1"/></fixed></tendon>
+            <actuator><plugin plugin="inerter.device" {where}="{where[0]}">
+            <config key="viscous" value="{damping}"/></plugin></actuator></mujoco>"""
+        )
+        data = run(model, 30)
+        assert ("viscous is too stiff" in said(capfd)) == (damping > most)
+        assert (np.abs(data.qvel).max() < 1e-3) == (damping < most)
+
+
 def test_stiffness_is_looked_at_again_when_the_options_change(
     capfd: pytest.CaptureFixture,
 ) -> None:

@@ -236,3 +236,32 @@ def test_a_numeric_that_would_hold_nothing_is_refused(numeric: str, words: str) 
     with pytest.raises(ValueError, match=words):
         mujoco.MjModel.from_xml_string(xml)
     mujoco.MjModel.from_xml_string(xml.replace(numeric, "camera.height"))
+
+
+@pytest.mark.parametrize("change", [1.0, 1e-9])
+def test_every_number_of_a_long_list_is_seen(change: float) -> None:
+    """None is lost beside the many after it."""
+    rows, columns = 24, 16
+    random = np.random.default_rng(0)
+    numbers = 3.0 * random.standard_normal(rows * columns)
+    spec = mujoco.MjSpec()
+    body = spec.worldbody.add_body()
+    body.add_joint(name="travel", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1, 0, 0])
+    body.add_geom(size=[0.1, 0, 0], mass=1.0)
+    around = {"force_map_lower": -0.1, "force_map_upper": 0.1, "force_map_speed": 1.0}
+    added = inerter.add_device(
+        spec, "strut", joint="travel", force_map=numbers.tolist(), force_map_columns=columns,
+        **around, live=("force_map",),
+    )  # fmt: skip
+    model = spec.compile()
+    place, data = added.of(model), mujoco.MjData(model)
+    first = place.live["force_map"]
+    for row in range(rows):
+        data.qpos[0] = -0.1 + 0.2 * row / (rows - 1)
+        mujoco.mj_forward(model, data)
+        before = data.sensordata[place.sensor["total"]]
+        model.numeric_data[first + row * columns : first + (row + 1) * columns] += change
+        mujoco.mj_forward(model, data)
+        told = data.sensordata[place.sensor["total"]] - before
+        # a smooth map does not pass through its numbers
+        assert told == pytest.approx(change, rel=0.2)

@@ -31,3 +31,39 @@ def test_the_force_never_leaves_the_level(law: str, integrator: str) -> None:
     # the motion dies out as it should: 0.3 m/s moves the car by millimetres, then it rests
     assert np.abs(path[:, :2]).max() < 0.01
     assert np.abs(path[-200:, :2]).max() < 1e-3
+
+
+def held_by_a_strut(law: str, integrator: str, reference: float) -> mujoco.MjModel:
+    """An arm that hangs at an angle [deg] from its reference pose, a bristle to the world."""
+    actuator = plugin_actuator(
+        {"inertance": 0.5, "friction": law, "coulomb_force": 40.0, "bristle_stiffness": 1e7,
+         "rest_length": 0.3},
+    )  # fmt: skip
+    return mujoco.MjModel.from_xml_string(
+        f"""<mujoco><option integrator="{integrator}" timestep="{STEP}"/>
+        <extension><plugin plugin="inerter.device"/></extension>
+        <worldbody><site name="wall" pos="0.6 0 0"/>
+        <body euler="0 {reference} 0"><joint type="hinge" axis="0 1 0"/>
+        <geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.02" mass="0.5" contype="0"/>
+        <site name="tip" pos="0.3 0 0"/></body></worldbody>
+        <tendon><spatial name="strut"><site site="wall"/><site site="tip"/></spatial></tendon>
+        <actuator>{actuator}</actuator></mujoco>"""
+    )
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS[:-1])
+@pytest.mark.parametrize("law", ["dahl", "lugre"])
+@pytest.mark.parametrize("reference", [0.0, 1.0, 40.0])
+def test_it_holds_whatever_the_reference_pose(law: str, integrator: str, reference: float) -> None:
+    """Along the arm, as at 0 degrees, the strut has no lever: no force there moves anything."""
+    model = held_by_a_strut(law, integrator, reference)
+    data = mujoco.MjData(model)
+    begin = np.deg2rad(40.0 - reference)
+    data.qpos[0] = begin
+    mujoco.mj_step(model, data, 500)
+    rest = data.qpos[0]
+    mujoco.mj_step(model, data, 500)
+    assert abs(rest - begin) < 1e-5
+    assert abs(data.qpos[0] - rest) < 1e-7
+    assert abs(data.qvel[0]) < 1e-6
+    assert 1.0 < abs(data.actuator_force[0]) < 4.0
