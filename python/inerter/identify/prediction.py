@@ -31,6 +31,8 @@ from inerter.identify.forgetting import Forgetting, held
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
 from inerter.identify.transient import (
+    MOST_STROKES,
+    most_bent,
     relaxing,
     swings_freely,
     without_bending,
@@ -44,9 +46,6 @@ Array = NDArray[np.float64]
 _NO_LIMITS = (np.inf, -np.inf)
 # share of what the bristle holds from which on the first force tells the side of its free play
 _TELLING = 0.1
-# a twist at the start is at most this many strokes of the run: more of it would be an oscillation
-# that nothing in the run excites, by which a shaft without stiffness carries any slow force
-_MOST_TWIST = 10.0
 
 
 def first_state(
@@ -92,8 +91,12 @@ def begin(
 
 
 def _twisted(device: Device, run: BenchRun, states: Array) -> Array:
-    """States whose series deflection may be one of the run."""
-    most = _MOST_TWIST * np.ptp(run.displacement) + device.backlash
+    """States whose series deflection may be one of the run.
+
+    More of it would be an oscillation that nothing in the run excites, by which a shaft without
+    stiffness carries any slow force.
+    """
+    most = MOST_STROKES * np.ptp(run.displacement) + device.backlash
     at = device.state_names.index("series_deflection")
     states[at] = np.clip(states[at], -most, most)
     return states
@@ -330,8 +333,9 @@ def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_
     forgets = Forgetting.of(device)
     residual = without_bending(forgets.path(run), forgets.reach, residual, mask, run.first)
     residual = without_relaxing(
-        relaxing(values), residual, run.spacing, mask, run.first, run.cutoff
-    )
+        relaxing(values), residual, run.spacing, mask, run.first, run.cutoff,
+        most_bent(values, float(np.ptp(run.displacement))),
+    )  # fmt: skip
     if (low_pass := slow_start(values)) is not None:
         residual = without_start(residual, run.spacing, mask & run.inner, low_pass, run.first)
     if amplitude := values.get("disturbance_amplitude", 0.0):

@@ -20,6 +20,8 @@ RELAXING = ("branch_time_1", "branch_time_2", "branch_time_3")
 """Coordinates that say how long branches relax."""
 # how fast a flywheel may have turned as a record began, in largest speeds of the record
 MOST_SPEEDS = 5.0
+MOST_STROKES = 10.0
+"""Strokes of a record by which a branch or a shaft may have been bent as it began."""
 # exponent of a decay that leaves nothing
 _DECAYED = 60.0
 # lengths of a bristle's decay along which it is followed
@@ -88,6 +90,12 @@ def relaxing(values: Mapping[str, float]) -> tuple[float, ...]:
     return tuple(values[name] for name in RELAXING if name in values)
 
 
+def most_bent(values: Mapping[str, float], travel: float) -> tuple[float, ...]:
+    """Forces [N] of these branches if they were bent by some strokes as a record began."""
+    names = [name.replace("time", "stiffness") for name in RELAXING if name in values]
+    return tuple(MOST_STROKES * travel * values[name] for name in names)
+
+
 def without_relaxing(
     times: Sequence[float],
     residual: Array,
@@ -95,22 +103,28 @@ def without_relaxing(
     mask: NDArray[np.bool_],
     first: int = 0,
     cutoff: float = np.inf,
+    most: Sequence[float] = (),
 ) -> Array:
     """A residual without what branches were bent by as a record began, shape (..., n).
 
     A branch that was bent before goes on to relax, exp(-t / time) from the sample `first` on; the
     share of the masked samples that has this form is taken out, as above. Not of branches so quick
     that a low-pass of this `cutoff` [Hz] makes another form of it, and steadily less towards them.
+    Of each branch `most` [N] at most, where that is given.
     """
     shortest = max(_PERIODS / cutoff, _FEWEST * spacing)
+    limits = [limit for limit, time in zip(most, times, strict=False) if time > shortest]
     times = [time for time in times if time > shortest]
     count = min(residual.shape[-1] - first, int(_DECAYED * max(times, default=0.0) / spacing) + 1)
     if not times or np.count_nonzero(mask) < 4 or count < 1:
         return residual
     basis, share = _relaxing(tuple(times), spacing, first, first + count, mask.tobytes())
     slow = np.clip(2.0 * (np.array(times) / shortest - 1.0), 0.0, 1.0)
+    sizes = slow * (residual[..., : first + count] @ share.T)
+    if limits:
+        sizes = np.clip(sizes, -np.array(limits), limits)
     rest = residual.copy()
-    rest[..., : first + count] -= slow * (residual[..., : first + count] @ share.T) @ basis
+    rest[..., : first + count] -= sizes @ basis
     return rest
 
 
