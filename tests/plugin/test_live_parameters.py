@@ -248,10 +248,9 @@ def test_every_number_of_a_long_list_is_seen(change: float) -> None:
     body = spec.worldbody.add_body()
     body.add_joint(name="travel", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1, 0, 0])
     body.add_geom(size=[0.1, 0, 0], mass=1.0)
-    around = {"force_map_lower": -0.1, "force_map_upper": 0.1, "force_map_speed": 1.0}
     added = inerter.add_device(
         spec, "strut", joint="travel", force_map=numbers.tolist(), force_map_columns=columns,
-        **around, live=("force_map",),
+        force_map_lower=-0.1, force_map_upper=0.1, force_map_speed=1.0, live=("force_map",),
     )  # fmt: skip
     model = spec.compile()
     place, data = added.of(model), mujoco.MjData(model)
