@@ -235,7 +235,7 @@ void watch_stiffness(const mjModel* m, Instance* self) {
   double rise, over_place = inerter_map_steepest(p, &rise);
   consider(&fastest, sqrt(over_place * light), swing, "force_map along the stroke", tendon);
   consider(&fastest, sqrt(gas * wheel), swing, "the gas spring", "");
-  // Euler takes the damping of a tendon at the start of a step, and that of a joint as told
+  // Euler takes the damping of a tendon at the start of a step, that of a joint without eulerdamp
   int tendon_damps = m->actuator_trntype[self->actuator] == mjTRN_TENDON;
   if (m->opt.integrator == mjINT_EULER && self->native &&
       (tendon_damps || m->opt.disableflags & mjDSBL_EULERDAMP)) {

@@ -11,6 +11,7 @@ import pytest
 from inerter.diagnose.composition import effects_of
 from inerter.diagnose.result import Rival
 from inerter.diagnose.rivals import Standing
+from inerter.diagnose.search import Search
 from inerter.diagnose.stages import Confirmed, Searched, Settled, compared, confirmed, searched
 from inerter.diagnose.stages.confirming import stands_in
 from inerter.diagnose.start import Given, prepared
@@ -151,3 +152,15 @@ def test_a_vehicle_is_searched_on_where_something_went(monkeypatch: pytest.Monke
     found = search.run()
     assert len(found.model.effects) == 2
     assert told == [0, 2]
+
+
+@pytest.mark.parametrize(("most", "asked"), [(4, False), (5, True), (np.inf, True)])
+def test_nothing_is_added_to_a_model_of_many_coordinates(most: float, asked: bool) -> None:
+    steps = []
+    search = SimpleNamespace(
+        found=[], most_complex=most, time=SimpleNamespace(is_over=lambda: False),
+        _best_step=steps.append, _two_steps=lambda current: None,
+    )  # fmt: skip
+    current = SimpleNamespace(complexity=4)
+    assert Search._added(cast(Any, search), cast(Any, current), None, 8) is current
+    assert bool(steps) == asked

@@ -165,6 +165,19 @@ def test_branches_that_are_bent_as_a_record_begins_are_settled() -> None:
     assert np.std(settled(model, run, left, run.inner)[run.inner]) < 0.1
 
 
+@pytest.mark.parametrize(("stiffness", "stays"), [(3e-3, 1.0), (6e3, 0.01)])
+def test_a_branch_was_bent_by_some_strokes_at_most(
+    run: BenchRun, stiffness: float, stays: float
+) -> None:
+    """One of next to no stiffness would carry any slow force, bent by kilometres."""
+    model = Model("none", {"branch_stiffness_1": stiffness, "branch_time_1": 2.0}, ())
+    slow = 6.0 * np.exp(-(run.elapsed - run.elapsed[run.first]) / 2.0)
+    left = settled(model, run, slow, np.ones(slow.size, np.bool_))[run.first :]
+    assert np.linalg.norm(left) == pytest.approx(
+        stays * np.linalg.norm(slow[run.first :]), rel=1e-3, abs=1.0
+    )
+
+
 def test_what_branches_were_bent_by_is_not_made_up() -> None:
     """Samples long after a branch has relaxed say nothing of what it was bent by."""
     residual = np.random.default_rng(3).standard_normal(TIME.size)

@@ -205,6 +205,15 @@ def test_sites_that_meet_are_said_once(capfd: pytest.CaptureFixture) -> None:
     assert said(capfd).count("the sites of its tendon meet") == 1
 
 
+def test_where_a_position_is_no_number_sites_do_not_meet(capfd: pytest.CaptureFixture) -> None:
+    model = mujoco.MjModel.from_xml_string(pair())
+    data = mujoco.MjData(model)
+    data.qpos[:] = np.nan
+    mujoco.mj_forward(model, data)
+    assert not np.isfinite(data.ten_length).any()
+    assert "sites of its tendon meet" not in said(capfd)
+
+
 def test_a_law_that_leaves_its_range_is_said_once(capfd: pytest.CaptureFixture) -> None:
     keys = {"inertance": 5, "inertance_gradient": -10}
     model = mujoco.MjModel.from_xml_string(pair('joint="a"', keys=keys))

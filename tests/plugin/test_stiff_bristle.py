@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inerter
 import mujoco
 import numpy as np
 import pytest
@@ -67,3 +68,15 @@ def test_it_holds_whatever_the_reference_pose(law: str, integrator: str, referen
     assert abs(data.qpos[0] - rest) < 1e-7
     assert abs(data.qvel[0]) < 1e-6
     assert 1.0 < abs(data.actuator_force[0]) < 4.0
+
+
+@pytest.mark.parametrize("law", ["dahl", "lugre"])
+def test_the_inverse_takes_it_as_the_step_does(law: str) -> None:
+    torques = []
+    for reference in (0.0, 40.0):
+        model = held_by_a_strut(law, "implicitfast", reference)
+        data = mujoco.MjData(model)
+        data.qpos[0], data.qvel[0] = np.deg2rad(40.0 - reference), 1e-3
+        mujoco.mj_forward(model, data)
+        torques.append(inerter.inverse_dynamics(model, data, np.zeros(1))[0])
+    assert torques[0] == pytest.approx(torques[1], rel=1e-6)

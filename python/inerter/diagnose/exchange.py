@@ -79,14 +79,12 @@ def _shaft_alone(search: Search, current: Scored) -> Scored | None:
         return None
     weighed = copy(search)
     weighed.weigh_for(alone.model)
-    rich, plain = (
-        weighed.score("grip_mass", None, weighed.problem.fit(model))
-        for model in (current.model, alone.model)
-    )
+    plain = weighed.score("exchange", None, weighed.problem.fit(alone.model))
+    rich = weighed.score("grip_mass", None, weighed.problem.fit(current.model))
     if weighed.better(plain, rich):
         return None
-    search.weigh_for(plain.model)
-    return search.score("exchange", None, search.problem.fit(plain.model))
+    search.weigh_for(alone.model)
+    return plain
 
 
 def other_side(search: Search, current: Scored) -> Scored | None:
