@@ -107,7 +107,7 @@ def _error(
         force = force + felt_beside(device, values, motion, run.elapsed)
         if not np.all(np.isfinite(force)):
             raise ValueError("the force is not finite")
-        shown = through_channel(values, force, run.elapsed, run.spacing)
+        shown = through_channel(values, force, run.elapsed - run.zero, run.spacing)
         residual = settled(model, run, run.force - shown, mask & run.inner)
         square += float(np.sum(residual[mask] ** 2))
         whole += float(np.sum(run.force[mask] ** 2))

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.run_constants import constants, contradicting, without_constants
+from inerter.diagnose.run_constants import contradicting, zeros_of
 from inerter.diagnose.start import Given
 from inerter.identify.runs import BenchRun, on_clocks, thin
 from inerter.identify.split import split
@@ -175,12 +175,12 @@ def excerpts(given: Given) -> Excerpts | None:
     if max(every) == 1 and needed > WORTH * total:
         return None
     runs = [thin(smooth(record, rough.cutoff, rough.channels)) for record in records]
-    apart = constants(runs)
+    zeros = zeros_of(runs)
     runs = on_clocks(runs)
     parted = split(runs, given.holdout)
     held = [run.name for i, run in enumerate(runs) if parted.role(i) == "holdout"]
     found = Excerpts(
-        whole=given, records=without_constants(records, apart), holdout=held, constants=apart,
+        whole=given, records=zeros.taken_off(records), holdout=held, constants=zeros.constants,
         contradicting=contradicting(runs), clocks=[run.clock for run in runs], every=every,
         spacings=[run.sample_spacing for run in runs],
     )  # fmt: skip

@@ -2,7 +2,9 @@
 
 A load cell zeroed anew, or gravity compensated anew, gives each run a constant of its own. It is
 read off a regression of the force on the motion with one constant per run, and what differs from
-their mean is taken off the run; the mean stays, it may be a cause. A run contradicts the others
+their mean is taken off the run; the mean stays, it may be a cause. A cell that was zeroed anew
+begins to drift anew: then its drift counts from the beginning of each run, where that needs the
+smaller constants, and not through the pauses between them. A run contradicts the others
 where these predict each other, and not it, though it has nothing of its own in its motion, and
 where what is found at the end does not explain it.
 """
@@ -10,7 +12,7 @@ where what is found at the end does not explain it.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,14 +59,53 @@ class _Rows:
     force: Array
 
 
+@dataclass(frozen=True)
+class Zeros:
+    """Where the zeros of the force were in some runs.
+
+    Attributes
+    ----------
+    constants
+        Of each run by name [N], about their mean; empty where none is to be seen.
+    anew
+        Whether the drift of the force began anew in each run.
+    """
+
+    constants: Mapping[str, float] = field(default_factory=dict)
+    anew: bool = False
+
+    def taken_off(self, records: Sequence[Record]) -> Sequence[Record]:
+        """Records without these constants, which know from when on their force drifts."""
+        if self.anew:
+            records = [replace(record, zeroed=float(record.time[0])) for record in records]
+        return without_constants(records, self.constants) if self.constants else records
+
+
+def zeros_of(runs: Sequence[BenchRun]) -> Zeros:
+    """Zeros of some runs, which are not parts of longer ones."""
+    runs = on_clocks(runs)
+    shared = _constants(runs)
+    own = [replace(run, clock=run.start) for run in runs]
+    if not shared or all(run.clock == each.clock for run, each in zip(runs, own, strict=True)):
+        return Zeros(shared)
+    anew = _constants(own)
+    if anew and np.ptp([*anew.values()]) > np.ptp([*shared.values()]):
+        return Zeros(shared)
+    return Zeros(anew, anew=True)
+
+
 def constants(runs: Sequence[BenchRun]) -> dict[str, float]:
     """Constants of runs [N] about their mean, by name; empty where none is to be seen.
 
     Those of a long run are read off the whole, not off its parts.
     """
+    return dict(zeros_of(runs).constants)
+
+
+def _constants(runs: Sequence[BenchRun]) -> dict[str, float]:
+    """The same of runs whose slow changes count from their clocks."""
     if len(runs) < 2 or any(run.part or not run.inner.any() for run in runs):
         return {}
-    runs = on_clocks(runs)
     if any(_goes_one_way(run) for run in runs) or not _share_places(runs):
         return {}
     rows = [_rows(run, _bends(runs)) for run in runs]

@@ -11,7 +11,7 @@ from inerter.diagnose.budget.carried import Carrying
 from inerter.diagnose.clipping import apart_from, limits_of
 from inerter.diagnose.clock_rate import ClockRate
 from inerter.diagnose.data import Data, divided
-from inerter.diagnose.run_constants import constants, contradicting, without_constants
+from inerter.diagnose.run_constants import contradicting, zeros_of
 from inerter.diagnose.time_limit import TimeLimit
 from inerter.identify.instants import at_instants, with_instants
 from inerter.identify.model import Model
@@ -106,10 +106,10 @@ def prepared(given: Given) -> Prepared:
     given.progress("smoothing: choosing the cut-off")
     smoothed = prepare(records)
     runs = apart_from(limits_of(records), [thin(motion) for motion in smoothed.motions])
-    apart = constants(runs)
-    if apart:
-        records = without_constants(records, apart)
-        smoothed = prepare(records)
+    zeros = zeros_of(runs)
+    taken = zeros.taken_off(records)
+    if taken is not records:
+        records, smoothed = taken, prepare(taken)
     data = divided(records, smoothed, given.holdout)
     # what is held out has no say in the smoothing of what is fitted: its own motion may be faster,
     # and is smoothed as the force that it makes tells
@@ -124,5 +124,5 @@ def prepared(given: Given) -> Prepared:
     return Prepared(
         given=given, data=data, plain=plain, baseline=baseline,
         weighed=weighed(records, plain, data.full.fit),
-        constants=apart, contradicting=contradicting(runs),
+        constants=zeros.constants, contradicting=contradicting(runs),
     )  # fmt: skip

@@ -116,7 +116,7 @@ def shown_by(rows: Rows, run: BenchRun) -> Array:
                 [(run.identity, _in_band_of, *plain[i]) for i in some],
                 lambda new, some=some: [_in_band_of(*rows[some[k]], run) for k in new],
             )
-            found += list(through_channel(channel, columns, run.elapsed, run.spacing))
+            found += list(through_channel(channel, columns, run.elapsed - run.zero, run.spacing))
         return found
 
     return _OF_RUNS.all_found([(run.identity, *key) for key in column_keys(rows, LINEAR)], shown)
@@ -179,7 +179,7 @@ def _force_of(name: str, model: Model, run: BenchRun) -> Array:
     column = COORDINATES[name].column
     if column and name not in BENDS and run.measured is not None:
         x, v, a = run.measured
-        return column(x - model.values.get("rest_length", 0.0), v, a, run.fine_elapsed)
+        return column(x - model.values.get("rest_length", 0.0), v, a, run.fine_elapsed - run.zero)
     device, less = _alone(name, model)
     fine = run.at_measured_rate(device, 0.0)["total"]
     return fine - run.at_measured_rate(less, 0.0)["total"] if less else fine
@@ -188,14 +188,14 @@ def _force_of(name: str, model: Model, run: BenchRun) -> Array:
 def through(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array:
     """Forces that bend sharply, (..., m), as the channel shows them in a run's band, (..., n)."""
     shown = force if np.isinf(run.cutoff) else run.in_band(force)
-    return through_channel(channel, shown, run.elapsed, run.spacing)
+    return through_channel(channel, shown, run.elapsed - run.zero, run.spacing)
 
 
 def _passed(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array:
     """The same at the rate at which they pass the channel, (..., m)."""
     if np.isinf(run.cutoff):
-        return through_channel(channel, force, run.elapsed, run.spacing)
-    return through_channel(channel, force, run.fine_elapsed, run.fine_spacing)
+        return through_channel(channel, force, run.elapsed - run.zero, run.spacing)
+    return through_channel(channel, force, run.fine_elapsed - run.zero, run.fine_spacing)
 
 
 def _column_of(name: str, model: Model, run: BenchRun) -> Array:
@@ -209,7 +209,7 @@ def _column_of(name: str, model: Model, run: BenchRun) -> Array:
         ]
         return totals[0] - totals[1] if len(totals) > 1 else totals[0]
     stretch = run.displacement - model.values.get("rest_length", 0.0)
-    return column(stretch, run.velocity, run.acceleration, run.elapsed)
+    return column(stretch, run.velocity, run.acceleration, run.elapsed - run.zero)
 
 
 def _alone(name: str, model: Model) -> tuple[Device, Device | None]:

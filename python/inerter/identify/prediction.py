@@ -131,7 +131,7 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
         else:
             total = run.thinned_force(device, state)
         total = total + felt_beside(device, values, motion, run.elapsed)
-        return through_channel(values, total, run.elapsed, run.spacing)
+        return through_channel(values, total, run.elapsed - run.zero, run.spacing)
 
     if is_sum(model):
         sharp = sharp_force(model, run, state, drift)
@@ -140,7 +140,7 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
             return np.full(run.force.size, np.inf)
         beside = felt_beside(device, values, motion, run.elapsed)
         total = smooth_force(model, run, state) + beside + sharp
-        return through_channel(values, total, run.elapsed, run.spacing)
+        return through_channel(values, total, run.elapsed - run.zero, run.spacing)
 
     rest, part = states_of(model.smooth_part, model, state), model.smooth_part.device
     smooth = forces_along(part, run.spacing, run.followed, rest, run.force.size)["total"]
@@ -160,16 +160,16 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
         total = smooth + run.in_band(rough)
         if drift:
             total = total + drift * run.elapsed * run.in_band(law)
-        return through_channel(values, total, run.elapsed, run.spacing)
+        return through_channel(values, total, run.elapsed - run.zero, run.spacing)
     times, spacing = run.fine_elapsed, run.fine_spacing
     total = found["total"] + drift * times * law if drift else found["total"]
     plain, less = without_limits(values), run.at_measured_rate(part, rest)["total"]
     if run.measured is not None:
         beside = felt_beside(device, values, run.measured, times)
         total, less = total + beside, less + beside
-    added = through_channel(values, total, times, spacing)
-    added = added - through_channel(plain, less, times, spacing)
-    return through_channel(plain, smooth, run.elapsed, run.spacing) + run.in_band(added)
+    added = through_channel(values, total, times - run.zero, spacing)
+    added = added - through_channel(plain, less, times - run.zero, spacing)
+    return through_channel(plain, smooth, run.elapsed - run.zero, run.spacing) + run.in_band(added)
 
 
 def beyond_limits(model: Model, run: BenchRun) -> NDArray[np.bool_]:
@@ -187,7 +187,7 @@ def beyond_limits(model: Model, run: BenchRun) -> NDArray[np.bool_]:
     drift = values.get("friction_drift", 0.0)
     total = with_friction_drift(device, drift, along, elapsed)
     total = total + felt_beside(device, values, motion, elapsed)
-    shown = through_channel(without_limits(values), total, elapsed, spacing)
+    shown = through_channel(without_limits(values), total, elapsed - run.zero, spacing)
     upper, lower = (values.get(name, limit) for name, limit in zip(LIMITS, _NO_LIMITS, strict=True))
     return (shown > upper) | (shown < lower)
 

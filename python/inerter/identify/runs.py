@@ -79,6 +79,8 @@ class BenchRun:
         The first sample at which the motion is known; the device is followed from there.
     clock : float
         Time from which slow changes count [s].
+    zeroed : float, optional
+        That from which the drift of the force does, where it is another one.
     corner : float
         Frequency [Hz] above which the motion's noise outweighs the force's; residuals count less
         there.
@@ -114,6 +116,7 @@ class BenchRun:
     instants: int = 1
     first: int = 0
     clock: float = 0.0
+    zeroed: float | None = None
     corner: float = np.inf
     noise: float = 0.0
     shaft: Shaft | None = None
@@ -265,6 +268,11 @@ class BenchRun:
         """Time since the clock began [s], shape (n,)."""
         return self.time - self.clock
 
+    @property
+    def zero(self) -> float:
+        """Elapsed time [s] from which the drift of the force counts."""
+        return 0.0 if self.zeroed is None else self.zeroed - self.clock
+
     @cached_property
     def fine_elapsed(self) -> Array:
         """The same at the measured rate, shape (m,)."""
@@ -313,6 +321,7 @@ def thin(motion: Motion, rate: float | None = None, force_band: float = 0.0) -> 
         instants=motion.instants,
         first=first,
         clock=motion.clock,
+        zeroed=motion.zeroed,
         quiet=motion.cutoff if cutoff > motion.cutoff else np.inf,
         motion=motion.motion,
         part=motion.part,
@@ -351,26 +360,15 @@ def whole(motion: Motion) -> BenchRun:
     """A run at the record's own rate with the force as measured: what figures are reported on."""
     first = int(np.argmax(motion.inner))
     measured = (motion.displacement, motion.velocity, motion.acceleration)
+    fine = between(motion.spacing, measured, motion.instants) if motion.instants > 1 else None
     return BenchRun(
-        name=motion.name,
-        start=motion.start,
-        spacing=motion.spacing,
-        displacement=motion.displacement,
-        velocity=motion.velocity,
-        acceleration=motion.acceleration,
-        force=motion.force,
-        inner=motion.inner,
-        first_force=_force_at(motion, first),
-        cutoff=np.inf,
-        measured=between(motion.spacing, measured, motion.instants)
-        if motion.instants > 1
-        else None,
-        instants=motion.instants,
-        first=first,
-        clock=motion.clock,
-        motion=motion.motion,
-        part=motion.part,
-    )
+        name=motion.name, start=motion.start, spacing=motion.spacing,
+        displacement=motion.displacement, velocity=motion.velocity,
+        acceleration=motion.acceleration, force=motion.force, inner=motion.inner,
+        first_force=_force_at(motion, first), first=first, cutoff=np.inf,
+        measured=fine, instants=motion.instants,
+        clock=motion.clock, zeroed=motion.zeroed, motion=motion.motion, part=motion.part,
+    )  # fmt: skip
 
 
 def from_first(run: BenchRun) -> BenchRun:

@@ -76,7 +76,7 @@ class Motion:
         What the device does; in rotation read rad for m and N m for N.
     part : Part, optional
         Of which run it is a part.
-    instants : int
+    instants, zeroed
         As of a `Record`.
     """
 
@@ -94,6 +94,7 @@ class Motion:
     motion: Kind = TRANSLATION
     part: Part | None = None
     instants: int = 1
+    zeroed: float | None = None
 
     @property
     def clock(self) -> float:
@@ -379,21 +380,12 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
     motion = displacement, velocity, acceleration
     displacement, velocity, acceleration = held_still(x, motion, spacing, cutoff, velocity_noise)
     return Motion(
-        name=record.name,
-        start=float(record.time[0]),
-        spacing=spacing,
-        displacement=displacement,
-        velocity=velocity,
-        acceleration=acceleration,
-        force=channels["force"],
-        cutoff=cutoff,
-        inner=inner,
-        velocity_noise=velocity_noise,
-        acceleration_noise=acceleration_noise,
-        motion=record.motion,
-        part=record.part,
-        instants=record.instants,
-    )
+        name=record.name, start=float(record.time[0]), spacing=spacing,
+        displacement=displacement, velocity=velocity, acceleration=acceleration,
+        force=channels["force"], cutoff=cutoff, inner=inner,
+        velocity_noise=velocity_noise, acceleration_noise=acceleration_noise,
+        motion=record.motion, part=record.part, zeroed=record.zeroed, instants=record.instants,
+    )  # fmt: skip
 
 
 def white_noise(values: Array) -> float:

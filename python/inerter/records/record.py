@@ -168,7 +168,8 @@ class Record(TimeRecord):
 
     part: where it is a part of a longer one. instants: per sample, at which forces are followed;
     more than one where a low-pass before the converter has smoothed what jumps. slowest: speed
-    [m/s] below which rests do not count, for their direction is not told.
+    [m/s] below which rests do not count, for their direction is not told. zeroed: time [s] at which
+    the force channel was zeroed anew, from which its drift counts.
     """
 
     displacement: Array
@@ -178,6 +179,7 @@ class Record(TimeRecord):
     part: Part | None = None
     instants: int = 1
     slowest: float = 0.0
+    zeroed: float | None = None
 
     kind: ClassVar[str] = "bench"
     required: ClassVar[tuple[str, ...]] = ("time", "displacement", "force")
