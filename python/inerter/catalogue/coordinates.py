@@ -316,6 +316,17 @@ _ALL = (
         size=lambda s: s.force / s.elapsed, column=lambda x, v, a, t: t,
     ),
     Coordinate(
+        name="force_coupling", unit="Hz", words={"force_coupling": "lowest frequency"},
+        belongs_to="channel", logarithmic=True, none=None, size=lambda s: s.frequency,
+        lower=lambda s: 0.5 / np.pi / s.run_length, upper=lambda s: 3 * s.frequency,
+    ),
+    Coordinate(
+        name="settling_time", unit="s", words={"settling_time": "time in which it settles"},
+        belongs_to="channel", logarithmic=True, none=None, size=lambda s: 1 / s.frequency,
+        lower=lambda s: 0.3 / s.frequency,
+        upper=lambda s: max(s.run_length, 0.6 / s.frequency),
+    ),
+    Coordinate(
         name="grip_mass", unit="kg", words={"grip_mass": "mass before the shaft"}, lower=_zero,
         belongs_to="channel", size=lambda s: s.force / s.acceleration, column=lambda x, v, a, t: a,
         begin=lambda s: 0.01 * s.force / s.acceleration,

@@ -28,7 +28,7 @@ class Scales:
     one_tone: the motion is so nearly one sine that displacement and acceleration are proportional.
     travel, force_range: least and largest displacement [m] and measured force [N]; middle: of the
     displacements between which the device is half of the time [m]; elapsed: longest elapsed time
-    [s].
+    [s]; run_length: the longest run [s].
     """
 
     force: float
@@ -40,6 +40,7 @@ class Scales:
     travel: tuple[float, float] = (-np.inf, np.inf)
     middle: float = 0.0
     elapsed: float = 1.0
+    run_length: float = 1.0
     force_range: tuple[float, float] = (-np.inf, np.inf)
 
     @property

@@ -36,7 +36,7 @@ from inerter.diagnose.where_losses_act import (
     rubbing_behind,
 )
 from inerter.identify.model import Model
-from inerter.identify.transient import RELAXING
+from inerter.identify.transient import RELAXING, SETTLING
 
 Build = Callable[[Effect, Model, Scales], Iterator[Candidate]]
 
@@ -385,6 +385,30 @@ def _relaxing(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate
     yield Candidate(effect.name, None, starts)
 
 
+def _settling(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """A zero that goes from one place to another, over some periods or most of the record."""
+    if model.values.keys().isdisjoint(SETTLING):
+        end = {} if "force_offset" in model.values else {"force_offset": 0.0}
+        times = _slow_times(sizes)
+        starts = tuple(model.adding(None, **end, settling_time=time) for time in times)
+        yield Candidate(effect.name, None, starts)
+
+
+def _coupled(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """A high-pass of the force; along one sine it is an early force."""
+    if model.values.keys().isdisjoint(SETTLING) and not sizes.one_tone:
+        corners = [0.5 / np.pi / time for time in _slow_times(sizes)]
+        starts = tuple(model.adding(None, force_coupling=corner) for corner in corners)
+        yield Candidate(effect.name, None, starts)
+
+
+def _slow_times(sizes: Scales) -> Sequence[float]:
+    """Times [s] from a period to most of the record."""
+    shortest = 1.0 / sizes.frequency
+    longest = max(0.5 * sizes.run_length, 2.0 * shortest)
+    return np.geomspace(shortest, longest, 3).tolist()
+
+
 def _by_the_search(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     # read off the residual by the search, see `tone` and `along_stroke`
     return iter(())
@@ -407,6 +431,8 @@ _SPECIAL: dict[str, Build] = {
     "viscous_friction": _viscous,
     "load_dependent_friction": _load,
     "sensor_filter": _filter,
+    "zero_settling": _settling,
+    "sensor_coupling": _coupled,
     "grip_mass": _grip,
     "damper_elasticity": _behind_a_spring,
     "position_force": _by_the_search,

@@ -62,8 +62,9 @@ IN_WORDS = (
     "them apart. "
 )
 """The same of one sine, as a verdict says it."""
+_DRIFTS = ("viscous_drift", "friction_drift", "force_drift")
 FEW = CannotTell(
-    ("viscous_drift", "friction_drift", "force_drift"),
+    (*_DRIFTS, "zero_settling"),
     "damping, friction and a force that change along the stroke",
     "strokes there and back, several of them",
 )
@@ -73,7 +74,7 @@ FEW_IN_WORDS = (
     "tell. "
 )
 SWEEP = CannotTell(
-    FEW.effects,
+    _DRIFTS,
     "damping and friction that change with the frequency",
     "the same sweep in the other direction, or one frequency for as long",
 )
@@ -95,7 +96,7 @@ RUN_UP = CannotTell(
     (
         "viscous_friction", "force_drift", "friction_drift", "viscous_drift", "backlash",
         "series_elasticity", "grip_mass", "viscoelasticity", "rate_state_friction",
-        "sensor_delay", "sensor_filter",
+        "sensor_delay", "sensor_filter", "sensor_coupling", "zero_settling",
     ),
     "damping and an inertance of another size",
     "a speed that rises and falls, quickly and slowly",

@@ -23,6 +23,7 @@ import numpy as np
 
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose import wording
+from inerter.diagnose.branch_or_coupling import with_coupling
 from inerter.diagnose.composition import stripped
 from inerter.diagnose.decision import CRITERIA, visible_delay
 from inerter.diagnose.leak_or_filter import with_leak
@@ -205,7 +206,7 @@ def with_members(
 ) -> Finding:
     """A finding with whatever else the data cannot tell from it."""
     finding = with_branch(with_exchange(finding, exchange), search, fit)
-    finding = with_force_of_place(finding, search, fit)
+    finding = with_coupling(with_force_of_place(finding, search, fit), search, fit)
     finding = with_leak(with_delay(finding, search, fit, covered), search, fit)
     return with_rate_of_level(with_low_pass(finding, search, fit), search, fit, covered)
 

@@ -47,7 +47,7 @@ def with_leak(finding: Finding, search: Search, fit: Fit) -> Finding:
     elif finding.effect == "sensor_filter" and "force_filter" in finding.parameters:
         twins, name = _leaks(fit.model, search), "leak_damping"
     twins = [model for model in twins if search.may_be(model)]
-    twin = _as_good(parallel(search.problem.fit, twins), search, fit) if twins else None
+    twin = as_good_as(parallel(search.problem.fit, twins), search, fit) if twins else None
     if twin is None:
         return finding
     value, error = parameter_errors(twin)[name]
@@ -111,7 +111,7 @@ def _leaks(model: Model, search: Search) -> list[Model]:
     return found
 
 
-def _as_good(fits: Sequence[Fit], search: Search, fit: Fit) -> Fit | None:
+def as_good_as(fits: Sequence[Fit], search: Search, fit: Fit) -> Fit | None:
     """The nearest of some fits that do as well as one, if any does."""
     masks, problem = search.problem.masks, search.problem
     here = replace(fit, residual=problem.residual(fit.model))

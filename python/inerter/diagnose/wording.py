@@ -147,17 +147,16 @@ def amount_in_words(effect: str, value: float, motion: Kind) -> str:
         return f"an inertance that changes with the place, as 1 {value:+.3g} x^2"
     if effect == "inertance_error":
         return f"an inertance of {value:.4g} {words(motion, 'kg')}"
-    if effect == "parallel_stiffness":
-        return f"a parallel stiffness of {value:.3g} {words(motion, 'N/m')}"
     if effect == "sensor_filter":
         return f"a low-pass of one channel, such as one of order {USUAL_ORDER} at {value:.3g} Hz"
     if effect == "asymmetric_friction":
         return f"friction that is {100 * abs(value):.3g} % larger one way, and smaller the other"
     if effect == "viscoelasticity":
         return f"{EFFECTS[effect].plain}, of {value:.3g} {words(motion, 'N/m')} or more"
-    if effect == "force_offset":
-        return f"a constant force of {value:.3g} {words(motion, 'N')}"
-    return f"{EFFECTS[effect].plain} of {value:.3g} {words(motion, 'N s/m')}"
+    if effect == "sensor_coupling":
+        return f"{EFFECTS[effect].plain}, with a corner of {value:.3g} Hz"
+    unit = {"parallel_stiffness": "N/m", "force_offset": "N"}.get(effect, "N s/m")
+    return f"{EFFECTS[effect].plain} of {value:.3g} {words(motion, unit)}"
 
 
 def curves_in_words(
@@ -240,6 +239,8 @@ def _teller(finding: Finding) -> str:
         return "steady strokes at speeds a hundred times apart"
     if "leak" in finding.members:
         return "another record"
+    if "sensor_coupling" in finding.members:
+        return "a known constant force"
     late = finding.members == ("sensor_delay", "sensor_filter")
     if late or _is_filter_at_least(finding):
         return "quicker motion, up to the filter's cut-off,"
@@ -438,10 +439,11 @@ def _verdict(diagnosis: Diagnosis) -> str:
     ]
     for finding in diagnosis.findings:
         if finding.members and not _is_level_at_least(finding):
-            asked = "sensor_filter" if "leak" in finding.members else finding.members[0]
+            asked = {"leak": "sensor_filter", "sensor_coupling": "sensor_coupling"}
+            told = next((asked[m] for m in finding.members if m in asked), finding.members[0])
             text += (
                 f" It is {either_in_words(finding)}: this motion cannot tell; {_teller(finding)} "
-                f"would ({EFFECTS[asked].experiment})."
+                f"would ({EFFECTS[told].experiment})."
             )
     if doubts:
         text += " In these data " + "; ".join(doubts) + "."

@@ -5,6 +5,8 @@
                              and kind, see `channel_filter`                               [Hz]
     displacement_filter      the same of the displacement channel, taken out of the motion [Hz]
     force_drift              force per elapsed time                                        [N/s]
+    force_coupling           corner below which the channel lets a force die away           [Hz]
+    settling_time            in which an offset of the run's own dies away                   [s]
     force_maximum, _minimum  where the channel clips                                       [N]
     disturbance_amplitude, disturbance_frequency   a tone from outside                     [N], [Hz]
     friction_drift           friction level times 1 + friction_drift (elapsed time)        [1/s]
@@ -15,7 +17,7 @@ The drifts of friction and damping are the device's own, but change with time as
 simulator does: the level of the friction law, Bouc-Wen's too, and not what friction adds that goes
 with the load. So may the mass be, of a nut say: beside the device it is a second inerter. Elapsed
 time counts from the beginning of a run, or of the first run where all share one clock. The phase of
-a tone is nobody's to predict and is read off each run.
+a tone and what settles are nobody's to predict, and are read off each run.
 """
 
 from __future__ import annotations
@@ -24,6 +26,7 @@ from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import lfilter
 
 from inerter.catalogue.coordinates import CHANNEL_UNITS
 from inerter.identify.channel_filter import filter_of, filtered
@@ -31,7 +34,7 @@ from inerter.identify.channel_filter import filter_of, filtered
 Array = NDArray[np.float64]
 
 LIMITS = ("force_maximum", "force_minimum")
-LINEAR = ("delay", "force_filter", "force_filter_order", "force_filter_bessel")
+LINEAR = ("delay", "force_filter", "force_filter_order", "force_filter_bessel", "force_coupling")
 """What of the channel is a linear filter of the force."""
 
 
@@ -66,6 +69,8 @@ def through_channel(
     """
     if drift := values.get("force_drift", 0.0):
         force = force + drift * elapsed
+    if corner := values.get("force_coupling", 0.0):
+        force = _coupled(force, corner, spacing)
     if (low_pass := filter_of(values, "force")) is not None:
         force = filtered(force, spacing, low_pass)
     force = delayed(force, values.get("delay", 0.0), spacing)
@@ -73,6 +78,13 @@ def through_channel(
         low, high = (values.get(name) for name in reversed(LIMITS))
         force = np.clip(force, low, high)
     return force
+
+
+def _coupled(force: Array, corner: float, spacing: float) -> Array:
+    """A force (..., n) through a high-pass of the first order that was at rest before it."""
+    rate = np.pi * corner * spacing
+    shares = (np.array([1.0, -1.0]) / (1.0 + rate), np.array([1.0, (rate - 1.0) / (1.0 + rate)]))
+    return np.asarray(lfilter(*shares, force), dtype=np.float64)
 
 
 def delayed(force: Array, delay: float, spacing: float) -> Array:

@@ -47,6 +47,7 @@ from inerter.identify.runs import BenchRun
 from inerter.identify.smoothness import smoothness
 from inerter.identify.transient import (
     RELAXING,
+    SETTLING,
     bending,
     relaxing,
     swings_freely,
@@ -82,7 +83,7 @@ _FILTER = ("displacement_filter", "displacement_filter_order", "displacement_fil
 # what holds no bristle
 _NEVER = Forgetting(0.0)
 # what is a linear filter of the force, and what says how long the time before the record shows
-_CHANNEL = (*LINEAR, *RELAXING, *_FILTER)
+_CHANNEL = (*LINEAR, *RELAXING, *SETTLING, *_FILTER)
 # share of an inertance that it may lose with the speed at most; its floor is 0.01
 _NEAR_FLOOR = 0.98
 

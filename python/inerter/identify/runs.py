@@ -429,6 +429,7 @@ def scales(runs: Sequence[BenchRun]) -> Scales:
         # not of the travel: one large stroke to one side moves that beyond a stop
         middle=float(np.mean(np.quantile(x, (0.25, 0.75)))),
         elapsed=max(float(run.elapsed[-1]) for run in runs),
+        run_length=max(float(np.ptp(run.time)) for run in runs),
         force_range=forces,
     )
 

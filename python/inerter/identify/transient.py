@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 TIMID = 1e-2
 RELAXING = ("branch_time_1", "branch_time_2", "branch_time_3")
 """Coordinates that say how long branches relax."""
+SETTLING = ("settling_time", "force_coupling")
+"""Coordinates that say how long what the channel held before dies away."""
 # how fast a flywheel may have turned as a record began, in largest speeds of the record
 MOST_SPEEDS = 5.0
 MOST_STROKES = 10.0
@@ -86,14 +88,23 @@ def without_transient(
 
 
 def relaxing(values: Mapping[str, float]) -> tuple[float, ...]:
-    """Times [s] in which the branches of some coordinates relax."""
-    return tuple(values[name] for name in RELAXING if name in values)
+    """Times [s] in which the branches of some coordinates relax, and the channel settles."""
+    times = [values[name] for name in RELAXING if name in values]
+    if "settling_time" in values:
+        times.append(values["settling_time"])
+    if "force_coupling" in values:
+        times.append(1.0 / (2.0 * math.pi * values["force_coupling"]))
+    return tuple(times)
 
 
 def most_bent(values: Mapping[str, float], travel: float) -> tuple[float, ...]:
-    """Forces [N] of these branches if they were bent by some strokes as a record began."""
+    """Forces [N] of these branches if they were bent by some strokes as a record began.
+
+    Of a channel that settles any.
+    """
     names = [name.replace("time", "stiffness") for name in RELAXING if name in values]
-    return tuple(MOST_STROKES * travel * values[name] for name in names)
+    settling = [math.inf for name in SETTLING if name in values]
+    return (*(MOST_STROKES * travel * values[name] for name in names), *settling)
 
 
 def without_relaxing(
