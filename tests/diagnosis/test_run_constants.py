@@ -16,6 +16,7 @@ from inerter.diagnose.run_constants import (
     contradicting,
     explained,
     without_constants,
+    zeros_of,
 )
 from inerter.diagnose.start import Given, prepared
 from inerter.identify.runs import BenchRun, thin
@@ -71,6 +72,36 @@ def test_what_a_channel_cuts_off_is_no_constant() -> None:
     anew = [replace(cut[0], force=np.maximum(runs[0].force + 25.0, -40.0)), *cut[1:]]
     found = constants(apart_from(limits, thinned(anew)))
     assert found["run 0"] - found["run 1"] == pytest.approx(25.0, abs=2.0)
+
+
+@pytest.mark.parametrize(("through", "anew"), [(True, False), (False, True)])
+def test_a_drift_goes_on_through_the_pauses_or_begins_anew(through: bool, anew: bool) -> None:
+    """Of a cell that was zeroed anew there are no constants of 300 s times its drift."""
+    runs = []
+    for i in range(3):
+        one = record(i, start=300.0 * i)
+        since = one.time if through else TIME
+        runs.append(replace(one, force=one.force + 0.4 * since))
+    zeros = zeros_of(thinned(runs))
+    assert zeros.anew is anew
+    assert zeros.constants == {}
+    taken = zeros.taken_off(runs)
+    assert [each.zeroed for each in taken] == [300.0 * i if anew else None for i in range(3)]
+    assert all(new.force is old.force for new, old in zip(taken, runs, strict=True))
+
+
+def test_a_drift_anew_beside_constants() -> None:
+    """Each run has its own zero, and drifts from there."""
+    runs = []
+    for i, zero in enumerate((12.0, -5.0, -7.0)):
+        one = record(i, start=300.0 * i)
+        runs.append(replace(one, force=one.force + 0.4 * TIME + zero))
+    zeros = zeros_of(thinned(runs))
+    assert zeros.anew
+    assert list(zeros.constants.values()) == pytest.approx([12.0, -5.0, -7.0], abs=1.0)
+    taken = zeros.taken_off(runs)
+    left = [float(np.mean(t.force - r.force)) for t, r in zip(taken, runs, strict=True)]
+    assert left == pytest.approx([-12.0, 5.0, 7.0], abs=1.0)
 
 
 def test_where_nothing_is_within_the_limits_there_is_no_constant() -> None:

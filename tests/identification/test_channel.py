@@ -35,6 +35,19 @@ def record(name: str = "run", start: float = 0.0, **channel: float) -> Record:
     return Record(name=name, time=TIME + start, displacement=np.asarray(x), force=force)
 
 
+def test_what_drifts_counts_from_where_the_channel_was_zeroed() -> None:
+    plain = record("two", 300.0)
+    drifting = replace(plain, force=plain.force + 0.8 * TIME, zeroed=300.0)
+    data = runs(record("one"), drifting)
+    model = Model("none", {"inertance": INERTANCE, "force_drift": 0.8}, ("inertance",))
+    bare = model.holding(force_drift=0.0)
+    more = [force_along(model, run) - force_along(bare, run) for run in data]
+    assert more[0][-1] == pytest.approx(0.8 * data[0].elapsed[-1])
+    assert more[1] == pytest.approx(0.8 * (data[1].time - 300.0))
+    # what else changes slowly goes on through the pause
+    assert data[1].elapsed[0] == pytest.approx(300.0)
+
+
 def runs(*records: Record) -> list[BenchRun]:
     return on_clocks([thin(motion) for motion in prepare(records).motions])
 
@@ -42,6 +55,17 @@ def runs(*records: Record) -> list[BenchRun]:
 def test_a_drift_is_nothing_at_the_beginning_and_its_rate_later() -> None:
     force = through_channel({"force_drift": 0.5}, np.zeros(5), np.arange(5.0), 1.0)
     assert force == pytest.approx(0.5 * np.arange(5))
+
+
+def test_a_coupled_channel_lets_a_step_die_away_and_passes_what_is_fast() -> None:
+    step = through_channel({"force_coupling": 0.2}, np.ones(TIME.size), TIME, 1e-3)
+    assert step == pytest.approx(np.exp(-2 * np.pi * 0.2 * TIME), abs=1e-3)
+    for frequency in (0.1, 0.2, 5.0):
+        angle = 2 * np.pi * frequency * np.arange(0, 60, 1e-3)
+        shown = through_channel({"force_coupling": 0.2}, np.cos(angle), np.zeros(angle.size), 1e-3)
+        late = slice(angle.size // 2, None)
+        seen = 2 * np.mean(shown[late] * np.exp(-1j * angle[late]))
+        assert seen == pytest.approx(1 / (1 - 0.2j / frequency), abs=1e-3)
 
 
 def test_a_limit_cuts_what_is_beyond_it_and_nothing_else() -> None:

@@ -90,6 +90,8 @@ BESIDE = {
          for word, value in (("period", 0.015), ("cosine", 0.1), ("sine", 0.05))},
     ),
     "delay": ("none", {"delay": 1.3 * H}),
+    "a force that is not held": ("none", {"force_coupling": 0.4}),
+    "a zero that settles": ("none", {"settling_time": 0.3}),
     "force filter": ("none", LOW_PASS),
     "displacement filter": (
         "none", {f"displacement{name.removeprefix('force')}": v for name, v in LOW_PASS.items()},
