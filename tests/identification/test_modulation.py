@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from inerter.commands import app
 from inerter.identify.modulation import Modulation, modulation
 from inerter.identify.modulation_output import law_in_words, write_modulation
 from inerter.records import Record, read_records
+from typer.testing import CliRunner
 
 SEALS = Path(__file__).parents[3] / "shared" / "data" / "pneumatic"
 
@@ -86,6 +89,39 @@ def test_one_run_in_which_the_channel_changes_is_enough() -> None:
 def test_nothing_but_the_offset_is_scaled_where_nothing_else_is(seed: int) -> None:
     found = modulation(runs(scaled=0.0, seed=seed), "pressure")
     assert [p.name for p in found.parameters if p.slope] == ["force_offset"]
+
+
+def test_what_is_known_is_taken_off_and_goes_with_nothing() -> None:
+    found = modulation(runs(), "pressure", {"inertance": 20.0, "coulomb_force": 26.0})
+    assert [p.name for p in found.parameters] == ["force_offset", "viscous", "stiffness"]
+    assert found.fixed == {"coulomb_force": 26.0, "inertance": 20.0}
+    # damping stands in for friction that is held where it does not stay
+    assert found.parameters[1].slope > 10.0
+    alone = modulation(runs(), "pressure", {"inertance": 20.0})
+    within(alone, "coulomb_force", (10.0, 4.0))
+    assert max(alone.left_out.values()) < 1.2
+    wrong = modulation(runs(), "pressure", {"inertance": 25.0})
+    assert min(wrong.left_out.values()) > 2.0 * max(alone.left_out.values())
+
+
+@pytest.mark.parametrize(
+    ("fixed", "said"),
+    [
+        ({"delay": 0.1}, "--fix delay=0.1: with --scaled-by the law has force_offset"),
+        ({"viscous": float("nan")}, "--fix viscous=nan: give a finite number"),
+    ],
+)
+def test_what_cannot_be_fixed_is_said(fixed: dict[str, float], said: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(said)):
+        modulation(runs(), "pressure", fixed)
+
+
+def test_options_of_the_other_way_are_not_ignored(tmp_path: Path) -> None:
+    """They were, without a word."""
+    given = ["identify", "no.csv", "--scaled-by", "pressure", "--out", str(tmp_path)]
+    told = CliRunner().invoke(app, [*given, "--law", "dahl", "--starts", "5"])
+    assert told.exit_code == 2
+    assert "has no use for --law, --starts" in " ".join(told.output.replace("│", " ").split())
 
 
 def test_files(tmp_path: Path) -> None:

@@ -11,6 +11,8 @@ from inerter.console import AsJson, Filters, Folder, out, progress_bar, refusing
 from inerter.core import WORDS
 from inerter.records.options import told_reading, with_reading
 
+_LAWS = ["ideal,viscous,coulomb,brown_mcphee,dahl,lugre,bouc_wen"]
+
 
 @with_reading
 def identify_command(
@@ -31,7 +33,7 @@ def identify_command(
             "rate_state, fluid; parts: series, backlash, offset, stiffness, hardening, quadratic, "
             "load, asymmetry, position, variable, delay, play.",
         ),
-    ] = ["ideal,viscous,coulomb,brown_mcphee,dahl,lugre,bouc_wen"],  # noqa: B006
+    ] = _LAWS,
     fix: Annotated[
         list[str] | None, typer.Option(help="KEY=VALUE of a known parameter (SI); again for more.")
     ] = None,
@@ -60,7 +62,8 @@ def identify_command(
         typer.Option(
             metavar="COLUMN",
             help="Instead: which parameters go with a further column of the records, such as a "
-            "pressure or a voltage. Writes modulation.json and modulation.png.",
+            "pressure or a voltage; of the other options --fix is known to it. Writes "
+            "modulation.json and modulation.png.",
         ),
     ] = None,
     out_dir: Folder = Path("out/identification"),
@@ -78,7 +81,13 @@ def identify_command(
       inerter identify seals/*.csv --scaled-by pressure
     """
     if scaled_by is not None:
-        _modulation(record, scaled_by, out_dir, as_json, stated)
+        others = {
+            "--law": law != _LAWS, "--holdout": holdout, "--filter": filters,
+            "--loss": loss != "linear", "--intervals": intervals != "profile",
+            "--starts": starts is not None, "--simulate": simulate,
+        }  # fmt: skip
+        given = [name for name, is_given in others.items() if is_given]
+        _modulation(record, scaled_by, fix or [], given, out_dir, as_json, stated)
         return
     from inerter.identify.channel_filter import stated_filters
     from inerter.identify.estimate import identify
@@ -112,7 +121,13 @@ def identify_command(
 
 
 def _modulation(
-    record: list[str], channel: str, folder: Path, as_json: bool, stated: dict[str, Any]
+    record: list[str],
+    channel: str,
+    fix: list[str],
+    others: list[str],
+    folder: Path,
+    as_json: bool,
+    stated: dict[str, Any],
 ) -> None:
     from inerter.folder import json_text
     from inerter.identify.modulation import modulation
@@ -120,10 +135,16 @@ def _modulation(
     from inerter.records import Record, read_records
 
     with refusing(folder, "modulation.json", "modulation.png"):
+        if others:
+            raise ValueError(
+                f"--scaled-by {channel} fits one linear law to all runs, and has no use for "
+                f"{', '.join(others)}: leave out the one or the other"
+            )
         with told_reading(**stated) as tell:
             records = read_records(record, "bench")
             tell()
-        found = modulation([record for record in records if isinstance(record, Record)], channel)
+        runs = [record for record in records if isinstance(record, Record)]
+        found = modulation(runs, channel, _fixed(fix))
         files = write_modulation(found, folder)
     if as_json:
         print(json_text(json_of(found)), end="")

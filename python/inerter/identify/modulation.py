@@ -8,15 +8,17 @@ q the channel in its own unit, q_0 its mean; F [N], tension positive. Linear lea
 moving samples of all runs, the motion smoothed; the width w of the sign is a hundredth of the rms
 speed. A parameter is scaled where its s_k differs from 0 by four standard errors, and the runs left
 out one after another are predicted better with it. The inertance is sought where the acceleration
-is no multiple of the displacement. Standard errors: sandwich over stretches, runs apart.
+is no multiple of the displacement. A parameter that is known is fixed. Standard errors: sandwich
+over stretches, runs apart.
 Not modelled: a parameter that bends with the channel (a residual of each run beside it shows that),
 hysteresis of the channel, friction with memory.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +35,7 @@ STRETCHES = 12
 SURE = 4.0
 # share of the force that has to differ between q's for there to be anything to find
 LEAST_CHANGE = 0.02
+NOTHING: Mapping[str, float] = MappingProxyType({})
 PARAMETERS = {
     "force_offset": "N",
     "coulomb_force": "N",
@@ -72,6 +75,8 @@ class Modulation:
         Its mean in each run.
     parameters
         All of them.
+    fixed
+        Parameters that were known, in their units.
     left_out, constant, own
         Rms error [N] of each run: predicted from the others with the scaled parameters, from the
         others with constant ones, and by constants of its own. Of a single run, of its quarters.
@@ -82,6 +87,7 @@ class Modulation:
     middle: float
     means: dict[str, float]
     parameters: list[Scaled]
+    fixed: dict[str, float]
     left_out: dict[str, float]
     constant: dict[str, float]
     own: dict[str, float]
@@ -90,10 +96,11 @@ class Modulation:
     def notes(self) -> list[str]:
         """What cannot be taken for a device."""
         known = {each.name: each for each in self.parameters}
-        mass, damper = known.get("inertance"), known["viscous"]
+        mass, damper = known.get("inertance"), known.get("viscous")
         if mass is None or not mass.value < -SURE * mass.stderr:
             return []
-        late = f", here by about {-1e3 * mass.value / damper.value:.2g} ms" if damper.value else ""
+        felt = damper is not None and damper.value
+        late = f", here by about {-1e3 * mass.value / felt:.2g} ms" if felt else ""
         return [
             f"inertance is {mass.value:.3g} kg, which no device has: a force channel that is late "
             f"looks like that{late}"
@@ -115,7 +122,9 @@ class _Part:
         return np.column_stack([self.columns, scaled])
 
 
-def modulation(records: Sequence[Record], channel: str) -> Modulation:
+def modulation(
+    records: Sequence[Record], channel: str, fixed: Mapping[str, float | str] = NOTHING
+) -> Modulation:
     """Which parameters go with a channel of the records, and how.
 
     Parameters
@@ -125,18 +134,22 @@ def modulation(records: Sequence[Record], channel: str) -> Modulation:
         or within them.
     channel
         Its name as in the header, with or without its unit.
+    fixed
+        Values of parameters that are known, and go with no channel.
 
     Raises
     ------
     ValueError
-        A run without the channel, or a channel that does not change.
+        A run without the channel, a channel that does not change, or a fixed parameter that this
+        law has not.
     """
+    known = _known(fixed)
     headers = [_header(record, channel) for record in records]
     refuse_unusable(records)
     motions = prepare(list(records)).motions
     # at the measured rate: a low-pass would blur the force at reversals, and not the sign
     runs = [whole(motion) for motion in motions]
-    parts = _parts(runs, records, headers)
+    names, parts = _parts(runs, records, headers, known)
     everything = np.concatenate([part.channel for part in parts])
     middle, spread = float(everything.mean()), float(np.ptp(everything))
     if not spread > LEAST_CHANGE * max(abs(middle), float(np.abs(everything).max())):
@@ -144,7 +157,6 @@ def modulation(records: Sequence[Record], channel: str) -> Modulation:
             f"--scaled-by {channel}: it is {middle:.4g} in all runs, so nothing can be seen to go "
             "with it; give runs at different values"
         )
-    names = list(PARAMETERS)[: parts[0].columns.shape[1]]
     scaled = _chosen(parts, len(names), middle)
     values, errors = _fitted(parts, scaled, middle)
     each = {part.name: _solved([part], (), middle) for part in parts}
@@ -169,6 +181,7 @@ def modulation(records: Sequence[Record], channel: str) -> Modulation:
         middle=middle,
         means={part.name: float(part.channel.mean()) for part in parts},
         parameters=found,
+        fixed=known,
         left_out=_left_out(parts, scaled, middle),
         constant=_left_out(parts, (), middle),
         own={part.name: _error(part, each[part.name], (), middle) for part in parts},
@@ -186,27 +199,46 @@ def _header(record: Record, channel: str) -> str:
     )
 
 
+def _known(fixed: Mapping[str, float | str]) -> dict[str, float]:
+    known = {name: float(value) for name, value in fixed.items() if name in PARAMETERS}
+    wrong = [name for name in fixed if name not in PARAMETERS]
+    if wrong or len(known) == len(PARAMETERS):
+        what = f"--fix {wrong[0]}={fixed[wrong[0]]}" if wrong else "--fix of every parameter"
+        raise ValueError(
+            f"{what}: with --scaled-by the law has {', '.join(PARAMETERS)}; fix some of these"
+        )
+    if bad := [name for name, value in known.items() if not np.isfinite(value)]:
+        raise ValueError(f"--fix {bad[0]}={known[bad[0]]}: give a finite number")
+    return known
+
+
 def _parts(
-    runs: Sequence[BenchRun], records: Sequence[Record], headers: Sequence[str]
-) -> list[_Part]:
-    """Each run, or the quarters of a single one."""
+    runs: Sequence[BenchRun],
+    records: Sequence[Record],
+    headers: Sequence[str],
+    known: Mapping[str, float],
+) -> tuple[list[str], list[_Part]]:
+    """Parameters that are looked for; each run, or the quarters of a single one."""
     inner = [run.velocity[run.inner] for run in runs]
     speed = float(np.sqrt(np.mean(np.concatenate(inner) ** 2)))
     x, a = (np.concatenate([getattr(run, n)[run.inner] for run in runs])
             for n in ("displacement", "acceleration"))  # fmt: skip
     with_mass = np.corrcoef(x, a)[0, 1] ** 2 < ONE_TONE
-    parts = []
+    # an inertance that is known is none to be told from a spring
+    every = list(PARAMETERS)[: 5 if with_mass or "inertance" in known else 4]
+    names, parts = [name for name in every if name not in known], []
     for run, record, header in zip(runs, records, headers, strict=True):
         q = np.interp(run.time, record.time, record.extra[header])
         moving = run.inner & (np.abs(run.velocity) > SLOW * speed) & np.isfinite(q)
         columns = [np.ones(q.size), np.tanh(run.velocity / (WIDTH * speed)), run.velocity]
-        columns += [run.displacement, *([run.acceleration] if with_mass else [])]
+        columns = dict(zip(PARAMETERS, [*columns, run.displacement, run.acceleration], strict=True))
+        force = run.force - sum(value * columns[name] for name, value in known.items())
         cut = np.array_split(np.flatnonzero(moving), 4 if len(runs) == 1 else 1)
         for number, index in enumerate(cut):
             name = run.name if len(runs) > 1 else f"{run.name}, quarter {number + 1}"
-            rows = np.column_stack(columns)[index]
-            parts.append(_Part(name, rows, q[index], run.force[index]))
-    return parts
+            rows = np.column_stack([columns[each] for each in names])[index]
+            parts.append(_Part(name, rows, q[index], force[index]))
+    return names, parts
 
 
 def _chosen(parts: Sequence[_Part], count: int, middle: float) -> tuple[int, ...]:

@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from inerter.folder import json_text, write_files
-from inerter.identify.modulation import Modulation, Scaled
+from inerter.identify.modulation import PARAMETERS, Modulation, Scaled
 from inerter.measured_text import measured
 from inerter.pictures.palette import LIGHT
 
@@ -43,6 +43,8 @@ def print_modulation(found: Modulation, console: Console) -> None:
     """Laws, and how well each run is predicted from the others."""
     for each in found.parameters:
         console.print(Text(law_in_words(found, each)), soft_wrap=True)
+    for name, value in found.fixed.items():
+        console.print(Text(f"{name} = {value:g} {PARAMETERS[name]}, as stated"), soft_wrap=True)
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
     table.add_column("left out")
     for head in (found.channel, "error [N]", "with constant parameters", "constants of its own"):
