@@ -52,6 +52,24 @@ def test_channels_that_tell_nothing_of_their_own_are_left_out(effects_seed: int)
     assert further_channels(made, runs) == {}
 
 
+def test_what_acts_from_elsewhere_is_looked_at(effects_seed: int) -> None:
+    """Force and motion together tell it, for it is what is left of the one beside the other."""
+    draw = np.random.default_rng(effects_seed)
+    found = []
+    for name in ("one", "two"):
+        x, v, a = motion(draw)
+        table, *_ = moved(draw, TIME, (0.5, 1.0, 1.7, 2.7), 1.0)
+        force = 20 * a + 60 * v + 3.0 * table + 0.3 * draw.standard_normal(TIME.size)
+        extra = {"table[m/s^2]": table, "second cell[N]": force + 0.2 * a}
+        noisy = x + 1e-6 * draw.standard_normal(TIME.size)
+        found.append(Record(name=name, time=TIME, displacement=noisy, force=force, extra=extra))
+    runs = [whole(each) for each in prepare(found).motions]
+    assert list(further_channels(found, runs)) == ["table"]
+    told = diagnose_bench(found)
+    assert told.unexplained.depends_on[0] == "the channel table"
+    assert '--scaled-by "table"' in told.verdict
+
+
 def test_a_blow_that_comes_once_is_told(effects_seed: int) -> None:
     draw = np.random.default_rng(effects_seed)
     x, v, a = motion(draw)

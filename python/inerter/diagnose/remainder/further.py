@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 # least change of a channel, per its largest value, for anything to go with it
 _CHANGE = 0.02
-# share of a channel's power that motion and force may tell of it
+# share of a channel's power that the motion may tell of it, and that the force may
 _ITS_OWN = 0.5
 # channels that are looked at, the first of a record
 _MOST = 12
@@ -45,17 +45,28 @@ def further_channels(records: Sequence[Record], runs: Sequence[BenchRun]) -> dic
 
 
 def _is_measured_otherwise(seen: Array, runs: Sequence[BenchRun]) -> bool:
-    """Whether a channel (n,) is motion or force in other words."""
-    names = ("displacement", "velocity", "acceleration", "force")
-    known = np.column_stack(
-        [np.concatenate([getattr(run, name)[run.inner] for run in runs]) for name in names]
-    )
-    known = np.column_stack([known, np.sign(known[:, 1])])
-    known, seen = known - known.mean(axis=0), seen - seen.mean()
-    sizes = np.sqrt(np.mean(known**2, axis=0))
-    known = known[:, sizes > 0] / sizes[sizes > 0]
-    left = seen - known @ np.linalg.lstsq(known, seen, rcond=1e-9)[0]
-    return bool(np.mean(left**2) < (1.0 - _ITS_OWN) * np.mean(seen**2))
+    """Whether a channel (n,) is motion or force in other words.
+
+    Not one that takes both to tell: what acts on the device from elsewhere is what is left of the
+    force beside the motion.
+    """
+
+    def of(name: str) -> Array:
+        return np.concatenate([getattr(run, name)[run.inner] for run in runs])
+
+    x, v, a, force = map(of, ("displacement", "velocity", "acceleration", "force"))
+    seen = seen - seen.mean()
+    return any(_told(seen, known) > _ITS_OWN for known in ((x, v, a, np.sign(v)), (force,)))
+
+
+def _told(seen: Array, known: Sequence[Array]) -> float:
+    """Share of a channel's power (n,) that others tell of it."""
+    columns = np.column_stack(known)
+    columns = columns - columns.mean(axis=0)
+    sizes = np.sqrt(np.mean(columns**2, axis=0))
+    columns = columns[:, sizes > 0] / sizes[sizes > 0]
+    left = seen - columns @ np.linalg.lstsq(columns, seen, rcond=1e-9)[0]
+    return 1.0 - float(np.mean(left**2) / np.mean(seen**2))
 
 
 def columns_of_channels(linear: Array, channels: Mapping[str, Array]) -> dict[str, Array]:
