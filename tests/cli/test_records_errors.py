@@ -287,6 +287,12 @@ def test_missing_file(tmp_path: Path) -> None:
 def test_folder_without_records(tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("x")
     assert "no records in this folder" in message(tmp_path)
+    assert f"if notes.txt is one, name the files: '{tmp_path}/*.txt'" in message(tmp_path)
+    (tmp_path / "zeros.dat").write_text("x")
+    assert "if notes.txt and 1 more are such" in message(tmp_path)
+    for path in tmp_path.iterdir():
+        path.unlink()
+    assert "put .csv, .xlsx," in message(tmp_path)
 
 
 def test_glob_without_match(tmp_path: Path) -> None:

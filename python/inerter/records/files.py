@@ -27,7 +27,7 @@ def _files(path: Path) -> list[Path]:
     if path.is_dir():
         found = sorted(p for p in path.iterdir() if _is_record_file(p))
         if not found:
-            raise RecordError(f"{path}: no records in this folder; put {_SOME} files into it")
+            raise RecordError(f"{path}: no records in this folder; {_instead(path)}")
         return found
     if path.exists() or not glob.has_magic(str(path)):
         return [path]
@@ -36,6 +36,17 @@ def _files(path: Path) -> list[Path]:
     if not found:
         raise RecordError(f"{path}: no record ({_SOME}) matches; check the pattern and the folder")
     return found
+
+
+def _instead(folder: Path) -> str:
+    """What to do where no file of a folder is taken for a record by its name."""
+    others = [p for p in folder.iterdir() if p.is_file() and p.suffix.lower() in EXTENSIONS]
+    others = sorted(p for p in others if not p.name.startswith("."))
+    if not others:
+        return f"put {_SOME} files into it"
+    more = f" and {len(others) - 1} more" if len(others) > 1 else ""
+    verb = "are such" if more else "is one"
+    return f"if {others[0].name}{more} {verb}, name the files: '{folder / f'*{others[0].suffix}'}'"
 
 
 def _is_record_file(path: Path) -> bool:
