@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.remainder.further import further_channels, measured_by
 from inerter.diagnose.remainder.lines import lines
 from inerter.diagnose.remainder.words import summary
+from inerter.identify.modulation import modulation
 from inerter.identify.runs import whole
 from inerter.records import Record
 from inerter.records.preparation import prepare
@@ -63,6 +66,15 @@ def test_what_acts_from_elsewhere_is_looked_at(effects_seed: int) -> None:
         extra = {"table[m/s^2]": table, "second cell[N]": force + 0.2 * a}
         noisy = x + 1e-6 * draw.standard_normal(TIME.size)
         found.append(Record(name=name, time=TIME, displacement=noisy, force=force, extra=extra))
+    # read as the acceleration of the device, which it is not
+    taken = [
+        replace(each, extra={}, acceleration=each.extra["table[m/s^2]"],
+                headers={"acceleration": "table acc [g]"}) for each in found
+    ]  # fmt: skip
+    assert list(further_channels(taken, [whole(each) for each in prepare(taken).motions])) == [
+        "table acc"
+    ]
+    assert modulation(taken, "table acc").unit == "m/s^2"
     runs = [whole(each) for each in prepare(found).motions]
     assert list(further_channels(found, runs)) == ["table"]
     told = diagnose_bench(found)

@@ -190,10 +190,10 @@ def modulation(
 
 def _header(record: Record, channel: str) -> str:
     """The header of a channel in a record."""
-    for header in record.extra:
+    for header in record.beside():
         if channel.strip().lower() in (header.lower(), header.partition("[")[0].strip().lower()):
             return header
-    known = ", ".join(record.extra) or "none"
+    known = ", ".join(record.beside()) or "none"
     raise ValueError(
         f"--scaled-by {channel}: {record.name} has no such column; its further columns: {known}"
     )
@@ -228,7 +228,7 @@ def _parts(
     every = list(PARAMETERS)[: 5 if with_mass or "inertance" in known else 4]
     names, parts = [name for name in every if name not in known], []
     for run, record, header in zip(runs, records, headers, strict=True):
-        q = np.interp(run.time, record.time, record.extra[header])
+        q = np.interp(run.time, record.time, record.beside()[header])
         moving = run.inner & (np.abs(run.velocity) > SLOW * speed) & np.isfinite(q)
         columns = [np.ones(q.size), np.tanh(run.velocity / (WIDTH * speed)), run.velocity]
         columns = dict(zip(PARAMETERS, [*columns, run.displacement, run.acceleration], strict=True))

@@ -118,6 +118,20 @@ class Columns:
         names = (*self.required[1:], *self.optional)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
+    def beside(self) -> dict[str, Array]:
+        """Further columns, and measured derivatives of the motion, by the header they had.
+
+        What is called an acceleration may be that of something else: of a table, say.
+        """
+        found = dict(self.extra)
+        length = "m" if self.motion == TRANSLATION else "rad"
+        for name, unit in (("velocity", f"{length}/s"), ("acceleration", f"{length}/s^2")):
+            values = getattr(self, name, None)
+            if values is not None:
+                plain = self.headers.get(name, name).partition("[")[0].strip()
+                found[f"{plain}[{unit}]"] = values
+        return found
+
     def turned_round(self, name: str) -> str:
         """What to type to have a column with the opposite sign."""
         given = self.headers.get(name, name)

@@ -26,13 +26,14 @@ _MOST = 12
 
 def further_channels(records: Sequence[Record], runs: Sequence[BenchRun]) -> dict[str, list[Array]]:
     """By name, each channel that all records have at the samples of their runs, about 0 to 1."""
-    headers = [h for h in records[0].extra if all(h in record.extra for record in records)]
+    channels = [record.beside() for record in records]
+    headers = [h for h in channels[0] if all(h in each for each in channels)]
     found = {}
     for header in headers[:_MOST]:
         name = header.partition("[")[0].strip()
         values = [
-            np.interp(run.time, record.time, record.extra[header])
-            for run, record in zip(runs, records, strict=True)
+            np.interp(run.time, record.time, each[header])
+            for run, record, each in zip(runs, records, channels, strict=True)
         ]
         if not all(np.isfinite(each).all() for each in values):
             continue
