@@ -166,6 +166,10 @@ def parameter_meaning(name: str) -> str:
         return "lateness of the force channel"
     if name in ("force_filter", "displacement_filter"):
         return f"cut-off of the {name.split('_')[0]} channel's low-pass, -3 dB"
+    if name == "force_coupling":
+        return "corner of the force channel's high-pass, -3 dB"
+    if name == "settling_time":
+        return "time in which the zero settles to 37 %"
     known = parameters().get(name)
     return known.meaning if known else ""
 
